@@ -1,0 +1,44 @@
+# Targets and functions that every part uses: warnings, sanitizers, instrumentation by the plugin of this tree, tests.
+
+# Warnings are errors only where CMAKE_COMPILE_WARNING_AS_ERROR says so (presets dev and ci): users' compilers differ.
+add_library(stipple_warnings INTERFACE)
+target_compile_options(stipple_warnings INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow $<$<COMPILE_LANGUAGE:CXX>:-Wconversion>)
+
+# For programs and libraries that run outside the traced process.
+add_library(stipple_sanitize INTERFACE)
+if(STIPPLE_SANITIZE)
+  target_compile_options(stipple_sanitize INTERFACE -fsanitize=${STIPPLE_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(stipple_sanitize INTERFACE -fsanitize=${STIPPLE_SANITIZE})
+endif()
+
+# Compiles `target` with the plugin that this tree builds for the compiler in use; a change of the plugin rebuilds it.
+# Without a plugin for that compiler the target is built uninstrumented, with a warning.
+function(stipple_instrument target)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND TARGET stipple_plugin_gcc)
+    set(plugin stipple_plugin_gcc)
+    set(flags -fplugin=$<TARGET_FILE:${plugin}>)
+  elseif(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    string(REGEX MATCH "^[0-9]+" major ${CMAKE_CXX_COMPILER_VERSION})
+    set(plugin stipple_plugin_llvm_${major})
+    set(flags -fplugin=$<TARGET_FILE:${plugin}> -fpass-plugin=$<TARGET_FILE:${plugin}>)
+  endif()
+  if(NOT TARGET "${plugin}")
+    message(WARNING "no stipple plugin for ${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}: ${target} is not instrumented")
+    return()
+  endif()
+  target_compile_options(${target} PRIVATE ${flags})
+  add_dependencies(${target} ${plugin})
+  get_target_property(sources ${target} SOURCES)
+  set_property(SOURCE ${sources} DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} APPEND PROPERTY OBJECT_DEPENDS $<TARGET_FILE:${plugin}>)
+endfunction()
+
+# stipple_test(NAME quick|full SOURCES ... LIBRARIES ...): a GoogleTest program, run as one CTest test.
+function(stipple_test name label)
+  cmake_parse_arguments(PARSE_ARGV 2 arg "" "" "SOURCES;LIBRARIES")
+  add_executable(${name} ${arg_SOURCES})
+  target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} stipple_warnings stipple_sanitize GTest::gtest_main)
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
+  add_test(NAME ${name} COMMAND ${name})
+  set_tests_properties(${name} PROPERTIES LABELS ${label} TIMEOUT 300)
+endfunction()
