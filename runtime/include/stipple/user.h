@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Manual events: what a program tells stipple about itself. C and C++.
  *
- * Nothing is linked: each call looks up a weak symbol and does nothing when no runtime is loaded, so a program that
- * uses this header runs unchanged without stipple (cost: one load and one test per call). */
+ * Nothing is linked: each call looks up a weak symbol and does nothing when no runtime is loaded,
+ * so a program that uses this header runs unchanged without stipple (cost: one load and one test
+ * per call). */
 #ifndef STIPPLE_USER_H
 #define STIPPLE_USER_H
 
@@ -12,20 +13,20 @@
 extern "C" {
 #endif
 
-/* The name of a mark or counter, with its unit ("" for none). Make it static: the runtime writes `id` at first use.
- *   static struct stipple_name queue_length = {"queue length", "rays", 0}; */
+/* The name of a mark or counter, with its unit ("" for none). Make it static: the runtime writes
+ * `id` at first use. static struct stipple_name queue_length = {"queue length", "rays", 0}; */
 struct stipple_name {
   const char* name;
   const char* unit;
   uint32_t id;
 };
 
-/* The address of a runtime function, or null. Read through the GOT by hand: a compiler's own access to a weak symbol
- * may be resolved to zero when the program is linked, and then a preloaded runtime would never be seen. */
-#define STIPPLE_RUNTIME_FUNCTION(symbol, pointer)                         \
-  __asm__(".weak " #symbol "\n\t{movq " #symbol                           \
-          "@GOTPCREL(%%rip), %0|mov %0, QWORD PTR " #symbol               \
-          "@GOTPCREL[rip]}"                                               \
+/* The address of a runtime function, or null. Read through the GOT by hand: a compiler's own access
+ * to a weak symbol may be resolved to zero when the program is linked, and then a preloaded runtime
+ * would never be seen. */
+#define STIPPLE_RUNTIME_FUNCTION(symbol, pointer)                                                 \
+  __asm__(".weak " #symbol "\n\t{movq " #symbol "@GOTPCREL(%%rip), %0|mov %0, QWORD PTR " #symbol \
+          "@GOTPCREL[rip]}"                                                                       \
           : "=r"(pointer))
 
 /* Marks a moment: the start of a phase, a decision, an end of supply. */

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// A statistic's result: what every table of `stipple stats` is, and what views draw. No printing
+// here.
+#ifndef STIPPLE_ANALYSIS_STATS_TABLE_H
+#define STIPPLE_ANALYSIS_STATS_TABLE_H
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace stipple {
+
+/// One value; std::monostate is "was not recorded" (JSON null, never 0).
+using Cell = std::variant<std::monostate, std::int64_t, double, std::string>;
+
+/// What a column holds. The name is the JSON key and carries the unit: "exclusive_s", "bytes".
+struct Column {
+  std::string name;
+};
+
+enum class TableShape {
+  kRows,    // JSON: array of objects
+  kMatrix,  // JSON: {"rows","columns","values"}; the first column holds the row's name, the others
+            // are the columns
+};
+
+/// A statistic over one archive (or a span of it).
+struct Table {
+  std::string name;
+  TableShape shape = TableShape::kRows;
+  std::vector<Column> columns;
+  std::vector<std::vector<Cell>> rows;  // each as long as columns
+};
+
+}  // namespace stipple
+
+#endif

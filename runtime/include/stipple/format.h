@@ -1,0 +1,404 @@
+// SPDX-License-Identifier: MIT
+// What lands on disk, version 1. Written by runtime/, read by analysis/trace; docs/format.md says
+// the same in prose.
+//
+// An archive is a directory NAME.stipple with one stream file HOSTNAME.PID.START.stream per
+// process. A stream file is a FileHeader, then chunks, each a multiple of kGranuleBytes and aligned
+// to it; bytes never written are zero. A chunk is a ChunkHeader, then words. A word that is zero
+// was never committed. Any other word is either a function event (8 bytes) or the header of an
+// extended record, told apart by the low 23 bits. Little-endian throughout. Values once used are
+// never reused; zero means "not written yet".
+#ifndef STIPPLE_FORMAT_H
+#define STIPPLE_FORMAT_H
+
+#include <cstddef>
+#include <cstdint>
+
+namespace stipple {
+
+inline constexpr std::uint64_t kFileMagic = 0x31656c7070697473;   // "stipple1"
+inline constexpr std::uint64_t kChunkMagic = 0x6b6e756863707473;  // "stpchunk"
+inline constexpr std::uint32_t kFormatVersion = 1;
+inline constexpr std::uint32_t kGranuleBytes = 16 * 1024;
+
+/// Features that a reader must know to read a stream at all; a set bit it does not know makes it
+/// refuse.
+enum class Feature : std::uint64_t { kCompacted = 1 };
+
+/// What `ticks` count.
+enum class ClockKind : std::uint32_t {
+  kTsc = 1,      // time-stamp counter; ticks per second follow from the chunk headers' pairs
+  kVirtual = 2,  // simulated nanoseconds
+};
+
+/// First bytes of a stream file. The first chunk follows at kGranuleBytes.
+struct FileHeader {
+  std::uint64_t magic;  // written last
+  std::uint32_t version;
+  std::uint32_t minimum_reader_version;
+  std::uint64_t features;  // Feature bits
+  std::uint32_t pid;
+  std::uint32_t parent_pid;
+  std::uint64_t start_realtime_ns;  // CLOCK_REALTIME when the stream began
+  std::uint64_t start_raw_ns;       // CLOCK_MONOTONIC_RAW at start_ticks
+  std::uint64_t start_ticks;
+  ClockKind clock;
+  std::uint32_t forked;  // 1: begun by a child of fork, in the parent's program
+  std::uint64_t tsc_hz;  // as the processor states it; 0: unknown
+  char boot_id[40];  // text of /proc/sys/kernel/random/boot_id: processes with the same one share
+                     // the TSC
+  char host_name[64];
+  char program[256];   // file name of the executable
+  char settings[256];  // clock mode and other settings as text, "clock=exact"
+};
+static_assert(sizeof(FileHeader) == 688);
+
+enum class ChunkKind : std::uint32_t {
+  kEvents = 1,       // of one thread, in the order of the slots
+  kDefinitions = 2,  // of the process: definitions, clock readings, losses, the end; never recycled
+};
+
+/// First bytes of a chunk.
+struct ChunkHeader {
+  std::uint64_t magic;  // written last
+  std::uint32_t bytes;  // of the whole chunk, header included
+  ChunkKind kind;
+  std::uint32_t thread;    // index within the process; 0 is the thread that began the stream
+  std::uint32_t tid;       // the kernel's
+  std::uint64_t sequence;  // 0, 1, ... within the thread's chunks of this kind
+  std::uint64_t ticks;     // full 64-bit time when the chunk was taken
+  std::uint64_t raw_ns;    // CLOCK_MONOTONIC_RAW at `ticks`
+  std::uint64_t lost;      // events this thread had lost before this chunk, in all
+  std::uint64_t reserved;
+};
+static_assert(sizeof(ChunkHeader) == 64);
+
+/// One word of a chunk.
+using EventWord = std::uint64_t;
+
+/// A region within one process, 1 .. kMaxRegion.
+enum class RegionId : std::uint32_t {};
+
+inline constexpr std::uint64_t kRegionMask = 0x7fffff;
+inline constexpr std::uint64_t kLeaveBit = 0x800000;
+inline constexpr int kTimeShift = 24;
+inline constexpr std::uint64_t kTimeMask = (std::uint64_t{1} << 40) - 1;  // of ticks
+inline constexpr std::uint32_t kMaxRegion = 0x7ffeff;
+inline constexpr std::uint32_t kKindBase =
+    0x7fff00;  // low 23 bits from here on: an extended record, kind = value - base
+
+/// A function event. Time is the low 40 bits of ticks; 0 means that the clock was not read: between
+/// its neighbours.
+constexpr EventWord MakeEvent(std::uint64_t ticks, bool leave, RegionId region) {
+  return (ticks << kTimeShift) | (leave ? kLeaveBit : 0) | static_cast<std::uint64_t>(region);
+}
+constexpr RegionId RegionOf(EventWord word) {
+  return RegionId{static_cast<std::uint32_t>(word & kRegionMask)};
+}
+constexpr bool IsLeave(EventWord word) { return (word & kLeaveBit) != 0; }
+constexpr std::uint64_t TimeOf(EventWord word) { return word >> kTimeShift; }
+
+/// Kinds of extended records. Definitions stand in definition chunks, the others in event chunks.
+enum class RecordKind : std::uint8_t {
+  // Events.
+  kMark = 1,
+  kCounter = 2,
+  kMpiSend = 3,
+  kMpiReceivePost = 4,
+  kMpiReceive = 5,
+  kMpiRequestEnd = 6,
+  kMpiCollective = 7,
+  kMpiProbe = 8,
+  kTransmission = 9,  // simulation: physical start and end
+  kUnwound = 10,      // frames left by longjmp
+  kRegionMode = 11,   // the budget changed a region's mode
+  kContextSwitch = 12,
+  kSystemCall = 13,
+  kSample = 14,
+  kOpenFrames = 15,  // call stack when a ring overwrote what came before
+  kTimeStamp = 16,   // a thread that was silent for long
+  kThreadEnd = 17,
+  kClockStep = 18,
+  // Definitions.
+  kDefineRegion = 64,
+  kDefineLocation = 65,
+  kDefineName = 66,
+  kDefineWorld = 67,
+  kDefineCommunicator = 68,
+  kDefineHost = 69,
+  kClockSync = 70,
+  kLoss = 71,
+  kProcessEnd = 72,
+  kVisitCounts = 73,
+  kAvailability = 74,
+  kCommandLine = 75,
+};
+
+// The header of an extended record: kind in the low 23 bits, bit 23 set once the record is closed,
+// length in 8-byte words (header included) in bits 24-47. An open header is a record that its
+// writer did not finish.
+inline constexpr std::uint64_t kClosedBit = std::uint64_t{1} << 23;
+inline constexpr std::uint32_t kMaxRecordWords = 0xffffff;
+constexpr EventWord MakeHeader(RecordKind kind, std::uint64_t words, bool closed) {
+  return (words << 24) | (closed ? kClosedBit : 0) | (kKindBase + static_cast<std::uint64_t>(kind));
+}
+constexpr bool IsRecord(EventWord word) { return (word & kRegionMask) >= kKindBase; }
+constexpr bool IsClosed(EventWord word) { return (word & kClosedBit) != 0; }
+constexpr RecordKind KindOf(EventWord word) {
+  return static_cast<RecordKind>((word & kRegionMask) - kKindBase);
+}
+constexpr std::uint64_t WordsOf(EventWord word) { return (word >> 24) & kMaxRecordWords; }
+
+/// What a region is; decides its colour and its part in the states.
+enum class RegionKind : std::uint32_t { kFunction = 1, kMpi = 2, kUser = 3, kSystem = 4 };
+
+// Every record below begins with `header`; each event with `ticks`, this location's clock, all 64
+// bits.
+
+/// The program marked a moment (user.h).
+struct Mark {
+  static constexpr RecordKind kKind = RecordKind::kMark;
+  EventWord header;
+  std::uint64_t ticks;
+  std::uint32_t name;  // DefineName
+  std::uint32_t reserved;
+};
+static_assert(sizeof(Mark) == 24);
+
+/// A counter has this value from now on (user.h).
+struct Counter {
+  static constexpr RecordKind kKind = RecordKind::kCounter;
+  EventWord header;
+  std::uint64_t ticks;
+  std::uint32_t name;  // DefineName
+  std::uint32_t reserved;
+  double value;
+};
+static_assert(sizeof(Counter) == 32);
+
+/// A message was handed to MPI on this location, before the call went on. None for MPI_PROC_NULL.
+struct MpiSend {
+  static constexpr RecordKind kKind = RecordKind::kMpiSend;
+  EventWord header;
+  std::uint64_t ticks;
+  std::uint64_t bytes;
+  std::uint32_t communicator;  // DefineCommunicator
+  std::int32_t receiver;       // rank in `communicator`
+  std::int32_t tag;
+  std::uint32_t request;  // number of the request within the process; 0: blocking
+};
+static_assert(sizeof(MpiSend) == 40);
+
+/// A non-blocking receive was posted (or started again, or matched by a probe); it matches in this
+/// order.
+struct MpiReceivePost {
+  static constexpr RecordKind kKind = RecordKind::kMpiReceivePost;
+  EventWord header;
+  std::uint64_t ticks;
+  std::uint32_t communicator;
+  std::uint32_t request;  // never 0
+};
+static_assert(sizeof(MpiReceivePost) == 24);
+
+/// A receive is complete; sender and tag are the message's own, never wildcards. A blocking receive
+/// (request 0) was posted where its call was entered.
+struct MpiReceive {
+  static constexpr RecordKind kKind = RecordKind::kMpiReceive;
+  EventWord header;
+  std::uint64_t ticks;
+  std::uint64_t bytes;
+  std::uint32_t communicator;
+  std::int32_t sender;  // rank in `communicator`
+  std::int32_t tag;
+  std::uint32_t request;  // that of the post; 0: blocking
+};
+static_assert(sizeof(MpiReceive) == 40);
+
+/// A request ended without a message of its own: a send completed, a request was cancelled or
+/// freed.
+struct MpiRequestEnd {
+  static constexpr RecordKind kKind = RecordKind::kMpiRequestEnd;
+  EventWord header;
+  std::uint64_t ticks;
+  std::uint32_t request;
+  std::uint32_t outcome;  // 1 completed, 2 cancelled, 3 freed while active
+};
+static_assert(sizeof(MpiRequestEnd) == 24);
+
+/// This location entered a collective; the n-th on a communicator is the same one on all its ranks.
+struct MpiCollective {
+  static constexpr RecordKind kKind = RecordKind::kMpiCollective;
+  EventWord header;
+  std::uint64_t ticks;
+  std::uint64_t bytes_sent;      // by this rank, itself included
+  std::uint64_t bytes_received;  // by this rank
+  std::uint32_t communicator;
+  std::int32_t root;      // rank in `communicator`; -1: none
+  std::uint32_t region;   // of the call
+  std::uint32_t request;  // 0: blocking
+};
+static_assert(sizeof(MpiCollective) == 48);
+
+/// A probe found a message waiting.
+struct MpiProbe {
+  static constexpr RecordKind kKind = RecordKind::kMpiProbe;
+  EventWord header;
+  std::uint64_t ticks;
+  std::uint64_t bytes;
+  std::uint32_t communicator;
+  std::int32_t sender;
+  std::int32_t tag;
+  std::uint32_t reserved;
+};
+static_assert(sizeof(MpiProbe) == 40);
+
+/// The thread ended; frames open now were left.
+struct ThreadEnd {
+  static constexpr RecordKind kKind = RecordKind::kThreadEnd;
+  EventWord header;
+  std::uint64_t ticks;
+};
+static_assert(sizeof(ThreadEnd) == 16);
+
+/// The full time of a thread that was silent for long.
+struct TimeStamp {
+  static constexpr RecordKind kKind = RecordKind::kTimeStamp;
+  EventWord header;
+  std::uint64_t ticks;
+  std::uint64_t raw_ns;
+};
+static_assert(sizeof(TimeStamp) == 24);
+
+// Definitions. Text follows the struct: its parts without terminators, one after the other,
+// zero-padded to 8 bytes.
+
+struct DefineRegion {
+  static constexpr RecordKind kKind = RecordKind::kDefineRegion;
+  EventWord header;
+  std::uint32_t region;
+  RegionKind region_kind;
+  std::uint32_t line;        // 0: unknown
+  std::uint32_t name_bytes;  // linkage name
+  std::uint32_t file_bytes;
+  std::uint32_t reserved;
+};
+static_assert(sizeof(DefineRegion) == 32);
+
+struct DefineLocation {
+  static constexpr RecordKind kKind = RecordKind::kDefineLocation;
+  EventWord header;
+  std::uint32_t thread;
+  std::uint32_t tid;
+  std::uint32_t name_bytes;
+  std::uint32_t reserved;
+};
+static_assert(sizeof(DefineLocation) == 24);
+
+/// Name and unit of a mark or counter.
+struct DefineName {
+  static constexpr RecordKind kKind = RecordKind::kDefineName;
+  EventWord header;
+  std::uint32_t name;
+  std::uint32_t name_bytes;
+  std::uint32_t unit_bytes;
+  std::uint32_t reserved;
+};
+static_assert(sizeof(DefineName) == 24);
+
+/// This process is a rank of an MPI program.
+struct DefineWorld {
+  static constexpr RecordKind kKind = RecordKind::kDefineWorld;
+  EventWord header;
+  std::int32_t world_rank;
+  std::int32_t world_size;
+};
+static_assert(sizeof(DefineWorld) == 16);
+
+/// A communicator, numbered within the process; 1 is MPI_COMM_WORLD, 2 is MPI_COMM_SELF. The same
+/// communicator on two ranks has the same parent, creation number and first member. `size` world
+/// ranks follow, as int32, in rank order.
+struct DefineCommunicator {
+  static constexpr RecordKind kKind = RecordKind::kDefineCommunicator;
+  EventWord header;
+  std::uint32_t communicator;
+  std::uint32_t parent;    // 0: none
+  std::uint32_t creation;  // how many communicators this rank had created from the parent before
+  std::int32_t size;
+};
+static_assert(sizeof(DefineCommunicator) == 24);
+
+/// This process hands out work (user.h).
+struct DefineHost {
+  static constexpr RecordKind kKind = RecordKind::kDefineHost;
+  EventWord header;
+};
+static_assert(sizeof(DefineHost) == 8);
+
+/// One reading of another process's clock: `local_ticks` here and `remote_ticks` there happened
+/// together, to within half of round_trip_ticks.
+struct ClockSync {
+  static constexpr RecordKind kKind = RecordKind::kClockSync;
+  EventWord header;
+  std::uint64_t local_ticks;
+  std::uint64_t remote_ticks;
+  std::uint64_t round_trip_ticks;  // least of all tries, local clock
+  std::int32_t remote_world_rank;
+  std::uint32_t tries;
+};
+static_assert(sizeof(ClockSync) == 40);
+
+/// Events that could not be recorded.
+struct Loss {
+  static constexpr RecordKind kKind = RecordKind::kLoss;
+  EventWord header;
+  std::uint64_t from_ticks;
+  std::uint64_t events;  // of this process, in all, when the record was written
+  std::int32_t error;    // errno that began it; 0: none
+  std::uint32_t reserved;
+};
+static_assert(sizeof(Loss) == 32);
+
+/// The process ended in order: the runtime saw return from main, exit, _exit or abort.
+struct ProcessEnd {
+  static constexpr RecordKind kKind = RecordKind::kProcessEnd;
+  EventWord header;
+  std::uint64_t ticks;
+  std::uint64_t raw_ns;  // CLOCK_MONOTONIC_RAW at `ticks`
+  std::uint64_t lost;    // events of the process that could not be recorded
+  std::uint32_t how;     // 1 return or exit, 2 _exit, 3 abort, 4 exec
+  std::int32_t status;
+};
+static_assert(sizeof(ProcessEnd) == 40);
+
+/// Exact visits of the regions that were counted only; `entries` pairs of (u32 region, u32 zero,
+/// u64 visits) follow.
+struct VisitCounts {
+  static constexpr RecordKind kKind = RecordKind::kVisitCounts;
+  EventWord header;
+  std::uint64_t entries;
+};
+static_assert(sizeof(VisitCounts) == 16);
+
+/// What this process records, and what it could not: `what` as text, "switches", "system calls".
+struct Availability {
+  static constexpr RecordKind kKind = RecordKind::kAvailability;
+  EventWord header;
+  std::uint32_t available;  // 0 no, 1 yes
+  std::int32_t error;       // errno of the probe
+  std::uint32_t what_bytes;
+  std::uint32_t reserved;
+};
+static_assert(sizeof(Availability) == 24);
+
+/// The command line, arguments separated by a zero byte.
+struct CommandLine {
+  static constexpr RecordKind kKind = RecordKind::kCommandLine;
+  EventWord header;
+  std::uint32_t text_bytes;
+  std::uint32_t reserved;
+};
+static_assert(sizeof(CommandLine) == 16);
+
+}  // namespace stipple
+
+#endif
