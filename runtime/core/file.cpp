@@ -10,6 +10,7 @@
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/uio.h>
 
 #include "stipple/format.h"
 
@@ -18,6 +19,9 @@ namespace {
 
 constexpr std::uint64_t kFirstExtentBytes = 256 * 1024;
 constexpr std::uint64_t kLargestExtentBytes = 16 * 1024 * 1024;
+// So much of a stream stays in the page cache for the analysis; a longer one shall not push the
+// program's own files out of memory.
+constexpr std::uint64_t kCachedBytes = 64ull << 40;
 constexpr int kHighDescriptor = 700;  // out of the way of programs that count on low numbers
 
 bool IsOurs(const StreamFile& file, int descriptor) {
@@ -135,6 +139,28 @@ char* TakeBytes(StreamFile& file, std::size_t bytes, int* error) {
   file.window += bytes;
   file.used += bytes;
   return taken;
+}
+
+int WriteBytes(StreamFile& file, std::uint64_t offset, const char* from, std::size_t bytes) {
+  constexpr long kDropBehind = 0x80;  // RWF_DONTCACHE, Linux 6.14
+  const int descriptor = Descriptor(file);
+  if (descriptor < 0) return -descriptor;
+  while (bytes > 0) {
+    const bool drop = offset >= kCachedBytes && !file.keep_cached;
+    iovec piece{const_cast<char*>(from), bytes};
+    const long written = Syscall(SYS_pwritev2, descriptor, Argument(&piece), 1,
+                                 static_cast<long>(offset), 0, drop ? kDropBehind : 0);
+    if (written == -EINTR) continue;
+    if (written < 0 && drop) {
+      file.keep_cached = true;
+      continue;
+    }
+    if (written <= 0) return written == 0 ? EIO : static_cast<int>(-written);
+    offset += static_cast<std::uint64_t>(written);
+    from += written;
+    bytes -= static_cast<std::size_t>(written);
+  }
+  return 0;
 }
 
 void TrimFile(StreamFile& file) {
