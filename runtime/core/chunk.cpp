@@ -1,24 +1,25 @@
 // SPDX-License-Identifier: MIT
 // Where a thread's events go.
 //
-// Events are stored into mapped pages of the stream file, so a kill loses none. The price is a fresh
-// page for every 512 events: a fault, an allocation, file system work, several nanoseconds per
-// event, more than all else but the clock. So only a thread's first chunks are new pages, 16 KiB
-// doubling to 128 KiB. From then on the thread keeps its window: a full one is copied by one write
-// to a new place in the file, cleared and used again while it is still in the cache (measured: a
-// quarter of the cost of fresh pages).
+// Events are stored into mapped pages of the stream file, so a kill loses none. The price is a
+// fresh page for every 512 events: a fault, an allocation, file system work, several nanoseconds
+// per event, more than all else but the clock. So only a thread's first chunks are new pages, 16
+// KiB doubling to 128 KiB. From then on the thread keeps its window: a full one is copied by one
+// write to a new place in the file, cleared and used again while it is still in the cache
+// (measured: a quarter of the cost of fresh pages).
 //
 // A kill at any moment leaves every chunk at least once:
 //   1. the copy is written, whole with its header. Killed before the end: the window still counts,
-//      and it stands earlier in the file; the first of two chunks of one thread and sequence counts;
+//      and it stands earlier in the file; the first of two chunks of one thread and sequence
+//      counts;
 //   2. the window's magic is set to zero: from here the copy counts;
 //   3. the first word of each granule, then all the window is cleared; it is no chunk meanwhile;
 //   4. the new header is written, magic last.
 //
 // A slot of the window may be reserved but not yet written, when a signal handler that interrupted
 // an event fills the window. Its late store must not hit the reused window. Such a slot is still
-// zero, or its record open: if there is one, the window stays in the file as it is, a chunk like any
-// other, and the thread takes a new one.
+// zero, or its record open: if there is one, the window stays in the file as it is, a chunk like
+// any other, and the thread takes a new one.
 #include "chunk.h"
 
 #include <emmintrin.h>
@@ -80,7 +81,8 @@ bool CanReuse(const Thread& thread, std::size_t bytes) {
   if (thread.chunk_bytes != kWindowBytes || bytes > kWindowBytes - sizeof(ChunkHeader))
     return false;
   const auto* end = reinterpret_cast<const EventWord*>(
-      thread.waste != 0 ? thread.waste : reinterpret_cast<std::uint64_t>(thread.chunk) + kWindowBytes);
+      thread.waste != 0 ? thread.waste
+                        : reinterpret_cast<std::uint64_t>(thread.chunk) + kWindowBytes);
   return IsComplete(FirstWord(thread.chunk), end);
 }
 
