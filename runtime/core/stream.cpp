@@ -194,6 +194,13 @@ void EndThread(void* pointer) {
             MADV_DONTNEED);
 }
 
+/// The time, or that of the chunk's begin if a signal handler took the chunk since.
+std::uint64_t NotBeforeChunk(std::uint64_t ticks) {
+  const auto* thread = reinterpret_cast<const Thread*>(stipple_stream);
+  const std::uint64_t begin = reinterpret_cast<const ChunkHeader*>(thread->chunk)->ticks;
+  return ticks < begin ? begin : ticks;
+}
+
 /// One visit of a region that is counted only, by a thread that has no counts yet.
 bool CountVisit(std::uint32_t region) {
   Thread* thread = KnownThread();
@@ -277,7 +284,7 @@ std::uint32_t stipple_slow_event(std::uint32_t token) {
     EventWord* place = ReserveSlowly(sizeof(EventWord), arrived);
     if (place != nullptr) {
       // What the runtime took here is outside of the visit.
-      const std::uint64_t ticks = leave ? arrived : ReadTicks();
+      const std::uint64_t ticks = leave ? NotBeforeChunk(arrived) : ReadTicks();
       const bool timed = (token & STIPPLE_NO_CLOCK) == 0;
       Commit(place, MakeEvent(timed ? ticks : 0, leave, RegionId{region}));
       return token;
