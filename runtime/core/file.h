@@ -21,7 +21,6 @@ struct StreamFile {
   std::uint64_t allocated;
   char* window;  // where byte `used` is mapped
   std::uint64_t next_extent_bytes;
-  bool keep_cached;  // the kernel cannot do otherwise
   bool closing;      // no more extents ahead of need
   Line<kPathBytes> path;
 };
