@@ -26,11 +26,14 @@ struct RegionText {
   unsigned line;  // 0: unknown
 };
 
-/// Appends an enter event and the region's descriptor. Operand 0 is the token, an early-clobbered
-/// output. Clobbers rax, rdx, r11 and the flags.
-std::string EnterCode(const RegionText& region, const TemplateSyntax& syntax);
+/// The region's descriptor, and the load of its slot: operand 0, an output, is the token.
+std::string SlotCode(const RegionText& region, const TemplateSyntax& syntax);
 
-/// Appends a leave event. Operand 0 is the token that the enter gave, an input. Same clobbers.
+/// Appends an enter event unless the token is 0. Operand 0 is the token, in and (early-clobbered)
+/// out: what comes out is for the exits. Clobbers rax, rdx, r11 and the flags.
+std::string EnterCode(const TemplateSyntax& syntax);
+
+/// Appends a leave event unless the token is 0. Operand 0 is the token, an input. Same clobbers.
 std::string LeaveCode(const TemplateSyntax& syntax);
 
 /// The block of the shared object with its constructor and destructor, for file scope (AT&T syntax,

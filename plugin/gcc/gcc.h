@@ -60,10 +60,14 @@ struct OwnedRegion {
 };
 OwnedRegion RegionOf(function* fun);
 
-/// An event as one statement that the inliner counts as one instruction. `token` is a 64-bit
-/// variable or SSA name.
-gimple* EnterStatement(function* fun, tree token);
+/// The parts of an event, each a statement that the inliner counts as one instruction. Tokens are
+/// 64-bit variables or SSA names.
+gimple* SlotStatement(function* fun, tree token);
+gimple* EnterStatement(tree token_out, tree token_in);
 gimple* LeaveStatement(tree token);
+
+/// `copy` = `token`, in a way that the compiler cannot see through.
+gimple* OpaqueCopy(tree copy, tree token);
 
 /// Inserts the events at either position.
 void InstrumentGraph(function* fun);     // after inlining: SSA, exceptions lowered

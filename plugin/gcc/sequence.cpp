@@ -13,7 +13,8 @@ void InstrumentSequence(function* fun) {
   gimple_seq leave = nullptr;
   gimple_seq_add_stmt(&leave, LeaveStatement(token));
   gimple_seq guarded = nullptr;
-  gimple_seq_add_stmt(&guarded, EnterStatement(fun, token));
+  gimple_seq_add_stmt(&guarded, SlotStatement(fun, token));
+  gimple_seq_add_stmt(&guarded, EnterStatement(token, token));
   gimple_seq_add_stmt(&guarded,
                       gimple_build_try(gimple_bind_body(bind), leave, GIMPLE_TRY_FINALLY));
   gimple_bind_set_body(bind, guarded);

@@ -22,27 +22,36 @@ tree Operand(const char* constraint, tree value) {
                          value);
 }
 
-gimple* Statement(const std::string& code, tree output, tree input) {
+// `in` and `out` share a register if both are given.
+gimple* Statement(const std::string& code, tree out, tree in, bool clobbers_registers) {
   vec<tree, va_gc>*inputs = nullptr, *outputs = nullptr, *clobbers = nullptr;
-  if (output != NULL_TREE) vec_safe_push(outputs, Operand("=&r", output));
-  if (input != NULL_TREE) vec_safe_push(inputs, Operand("r", input));
-  for (const char* name : {"rax", "rdx", "r11", "cc"})
-    vec_safe_push(clobbers, build_tree_list(NULL_TREE, build_string(strlen(name), name)));
+  if (out != NULL_TREE) vec_safe_push(outputs, Operand("=&r", out));
+  if (in != NULL_TREE) vec_safe_push(inputs, Operand(out == NULL_TREE ? "r" : "0", in));
+  if (clobbers_registers) {
+    for (const char* name : {"rax", "rdx", "r11", "cc"})
+      vec_safe_push(clobbers, build_tree_list(NULL_TREE, build_string(strlen(name), name)));
+  }
   gasm* statement =
       gimple_build_asm_vec(ggc_strdup(code.c_str()), inputs, outputs, clobbers, nullptr);
   // Volatile orders events among each other and to calls; nothing else of the program is held back.
   gimple_asm_set_volatile(statement, true);
   gimple_asm_set_inline(statement, true);
-  if (output != NULL_TREE && TREE_CODE(output) == SSA_NAME) SSA_NAME_DEF_STMT(output) = statement;
+  if (out != NULL_TREE && TREE_CODE(out) == SSA_NAME) SSA_NAME_DEF_STMT(out) = statement;
   return statement;
 }
 
 }  // namespace
 
-gimple* EnterStatement(function* fun, tree token) {
-  return Statement(EnterCode(RegionOf(fun).text(), kSyntax), token, NULL_TREE);
+gimple* SlotStatement(function* fun, tree token) {
+  return Statement(SlotCode(RegionOf(fun).text(), kSyntax), token, NULL_TREE, false);
 }
 
-gimple* LeaveStatement(tree token) { return Statement(LeaveCode(kSyntax), NULL_TREE, token); }
+gimple* EnterStatement(tree token_out, tree token_in) {
+  return Statement(EnterCode(kSyntax), token_out, token_in, true);
+}
+
+gimple* LeaveStatement(tree token) { return Statement(LeaveCode(kSyntax), NULL_TREE, token, true); }
+
+gimple* OpaqueCopy(tree copy, tree token) { return Statement("", copy, token, false); }
 
 }  // namespace stipple::plugin
