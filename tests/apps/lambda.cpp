@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// Lambdas, templates, constexpr at run time, operators: names come out demangled.
+#include <cstdio>
+
+template <class T, int n>
+[[gnu::noinline]] T Power(T x) {
+  T result = 1;
+  for (int i = 0; i < n; ++i) result *= x;
+  return result;
+}
+
+[[gnu::noinline]] constexpr int Square(int x) { return x * x; }
+
+struct Counter {
+  int n = 0;
+  [[gnu::noinline]] Counter& operator++() {
+    std::printf("%d\n", ++n);
+    return *this;
+  }
+};
+
+int main(int argc, char**) {
+  auto add = [argc](int x) __attribute__((noinline)) {
+    std::printf("lambda %d\n", x);
+    return x + argc;
+  };
+  static_assert(Square(3) == 9);
+  Counter counter;
+  ++counter;
+  std::printf("%d %d %.1f %d\n", add(1), Square(argc + 1), Power<double, 3>(1.5), Power<int, 2>(5));
+}
