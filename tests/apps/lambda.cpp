@@ -27,5 +27,8 @@ int main(int argc, char**) {
   static_assert(Square(3) == 9);
   Counter counter;
   ++counter;
-  std::printf("%d %d %.1f %d\n", add(1), Square(argc + 1), Power<double, 3>(1.5), Power<int, 2>(5));
+  std::printf("%d\n", add(1));
+  std::printf("%d\n", Square(argc + 1));
+  std::printf("%.1f\n", Power<double, 3>(1.5));
+  std::printf("%d\n", Power<int, 2>(5));
 }
