@@ -25,10 +25,11 @@ Call calls[] = {
 
 thread_local constinit std::uintptr_t outermost_frame = 0;
 
-void* FindSymbol(const char* name) {
-  if (void* found = dlsym(RTLD_NEXT, name)) return found;
-  // An MPI library that came with a module loaded at run time (Python's, for one) is not in the
-  // global scope; its users still bind to this library first, which is.
+namespace {
+
+// An MPI library that came with a module loaded at run time (Python's, for one) is not in the
+// global scope; its users still bind to this library first, which is.
+void* FindInLibrary(const char* name) {
   void* library = dlopen("libmpi.so.40", RTLD_LAZY | RTLD_NOLOAD);
   if (library == nullptr) return nullptr;
   void* found = dlsym(library, name);
@@ -36,8 +37,22 @@ void* FindSymbol(const char* name) {
   return found;
 }
 
+}  // namespace
+
+void* FindFunction(const char* name) {
+  void* found = dlsym(RTLD_NEXT, name);
+  return found != nullptr ? found : FindInLibrary(name);
+}
+
+// From the front of the scope: a program may hold the one copy of a library's variable that all use
+// (a copy relocation), and the library's own is then never filled in.
+void* FindVariable(const char* name) {
+  void* found = dlsym(RTLD_DEFAULT, name);
+  return found != nullptr ? found : FindInLibrary(name);
+}
+
 void* ResolveCall(Call& call) {
-  void* real = FindSymbol(call.name);
+  void* real = FindFunction(call.name);
   call.real.store(real, std::memory_order_relaxed);
   return real;
 }
@@ -46,7 +61,7 @@ bool KnownMpi() {
   enum class Known : int { kUnasked, kYes, kNo };
   static constinit std::atomic<Known> known{Known::kUnasked};
   if (known.load(std::memory_order_relaxed) == Known::kUnasked) {
-    known.store(FindSymbol("ompi_mpi_comm_world") != nullptr ? Known::kYes : Known::kNo,
+    known.store(FindVariable("ompi_mpi_comm_world") != nullptr ? Known::kYes : Known::kNo,
                 std::memory_order_relaxed);
   }
   return known.load(std::memory_order_relaxed) == Known::kYes;

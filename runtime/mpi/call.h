@@ -57,9 +57,12 @@ extern Call calls[static_cast<std::uint32_t>(CallIndex::kCount)];
 
 inline Call& CallOf(CallIndex index) { return calls[static_cast<std::uint32_t>(index)]; }
 
-/// Address of a function or variable of the MPI library that the process uses; null if there is
-/// none.
-void* FindSymbol(const char* name);
+/// Address of a function of the MPI library that the process uses, not of its wrapper; null if
+/// there is none.
+void* FindFunction(const char* name);
+
+/// Address of a variable of the MPI library, as the program sees it; null if there is none.
+void* FindVariable(const char* name);
 
 /// Looks the real function up and keeps it. Null if this MPI has no such function.
 void* ResolveCall(Call& call);

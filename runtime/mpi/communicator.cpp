@@ -140,14 +140,15 @@ bool IsNull(MPI_Comm comm) { return comm == nullptr || comm == predefined.comm_n
 }  // namespace
 
 void BeginCommunicators() {
-  predefined.world = static_cast<MPI_Comm>(FindSymbol("ompi_mpi_comm_world"));
-  predefined.self = static_cast<MPI_Comm>(FindSymbol("ompi_mpi_comm_self"));
-  predefined.comm_null = static_cast<MPI_Comm>(FindSymbol("ompi_mpi_comm_null"));
-  predefined.request_null = static_cast<MPI_Request>(FindSymbol("ompi_request_null"));
-  predefined.message_null = static_cast<MPI_Message>(FindSymbol("ompi_message_null"));
-  predefined.message_no_proc = static_cast<MPI_Message>(FindSymbol("ompi_message_no_proc"));
-  predefined.byte = static_cast<MPI_Datatype>(FindSymbol("ompi_mpi_byte"));
-  predefined.datatype_null = static_cast<MPI_Datatype>(FindSymbol("ompi_mpi_datatype_null"));
+  predefined.world = static_cast<MPI_Comm>(FindVariable("ompi_mpi_comm_world"));
+  predefined.self = static_cast<MPI_Comm>(FindVariable("ompi_mpi_comm_self"));
+  predefined.comm_null = static_cast<MPI_Comm>(FindVariable("ompi_mpi_comm_null"));
+  predefined.request_null = static_cast<MPI_Request>(FindVariable("ompi_request_null"));
+  predefined.request_empty = static_cast<MPI_Request>(FindVariable("ompi_request_empty"));
+  predefined.message_null = static_cast<MPI_Message>(FindVariable("ompi_message_null"));
+  predefined.message_no_proc = static_cast<MPI_Message>(FindVariable("ompi_message_no_proc"));
+  predefined.byte = static_cast<MPI_Datatype>(FindVariable("ompi_mpi_byte"));
+  predefined.datatype_null = static_cast<MPI_Datatype>(FindVariable("ompi_mpi_datatype_null"));
   STIPPLE_REAL(Comm_rank)(predefined.world, &world.rank);
   STIPPLE_REAL(Comm_size)(predefined.world, &world.size);
   STIPPLE_REAL(Comm_group)(predefined.world, &world_group);

@@ -37,7 +37,7 @@ struct Communicator {
 /// is loaded into programs without MPI too.
 struct Predefined {
   MPI_Comm world, self, comm_null;
-  MPI_Request request_null;
+  MPI_Request request_null, request_empty;  // empty: complete when posted
   MPI_Message message_null, message_no_proc;
   MPI_Datatype byte, datatype_null;
 };

@@ -194,6 +194,9 @@ Request CollectiveRequest(uint32_t number) {
 
 void Follow(int result, const Request& request, const MPI_Request* handle) {
   if (result != MPI_SUCCESS || request.number == 0 || *handle == predefined.request_null) return;
+  if (*handle == predefined.request_empty && request.kind != RequestKind::kReceive) {
+    return AppendEnd(stipple_ticks(), request.number, kCompleted);
+  }
   requests.Put(KeyOf(*handle), request);
 }
 

@@ -61,7 +61,8 @@ Request DescribeReceive(int source, MPI_Comm comm);
 /// A collective that was recorded under `number`.
 Request CollectiveRequest(uint32_t number);
 
-/// After the posting call: follows the request it made, if it made one.
+/// After the posting call: follows the request it made, if it made one. What was complete at once
+/// has ended: MPI then hands out one handle that all such requests share.
 void Follow(int result, const Request& request, const MPI_Request* handle);
 
 /// Records what MPI_Start(all) is about to start.
