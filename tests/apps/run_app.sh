@@ -51,7 +51,7 @@ run() { # FOLDER PREFIX...: stdout to FOLDER/out, exit status checked
 
 # The recorder's lines, as `stipple print --canonical` would show them.
 canonical_of_recorder() {
-  c++filt | awk '{ key = $1 " " $2; sub(/^[0-9]+ [0-9]+ /, "")
+  c++filt | sed -E 's/__([a-z0-9_]+)_MOD_/\1::/' | awk '{ key = $1 " " $2; sub(/^[0-9]+ [0-9]+ /, "")
                    if (!(key in text)) order[++n] = key
                    text[key] = text[key] $0 "\n" }
                  END { for (i = 1; i <= n; ++i) printf "location 0 %s\n%s", order[i], text[order[i]] }'
@@ -82,6 +82,7 @@ awk '/^location/ { depth = 0 }
 
 awk 'NR == FNR { if ($1 == "enter") compared[substr($0, 7)] = 1; next }
      /^location/ { heading = $0; next }
+     /^thread end/ { next }  # the last word of a detached thread may come too late
      /^(enter|leave) / && !(substr($0, 7) in compared) { next }
      { if (heading != "") print heading; heading = ""; print }' "$golden" "$work/events" \
   >"$work/compared"
