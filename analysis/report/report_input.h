@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// What a report shows: everything is computed before anything is drawn, so that the program that
+// computes needs no VTK and the library that draws needs no archive.
+#ifndef STIPPLE_ANALYSIS_REPORT_REPORT_INPUT_H
+#define STIPPLE_ANALYSIS_REPORT_REPORT_INPUT_H
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "analysis/stats/finding.h"
+#include "analysis/stats/table.h"
+#include "analysis/stats/timeline.h"
+
+namespace stipple {
+
+class Trace;
+
+struct ReportInput {
+  std::string title;  // the traced program
+  Finding finding;
+  std::vector<std::string> facts;  // "8 ranks and a host", "2.31 s", "1 204 messages", ...
+  Timeline timeline;               // the whole run, with marks
+  Timeline detail;                 // its worst period, with messages
+  Table states;
+  Table messages;
+  Table volume;
+  Table profile;                    // most exclusive time first
+  Table waits;                      // longest first
+  std::vector<std::string> health;  // one line per problem; empty: the archive is sound
+  bool mono = false;                // patterns instead of colours
+};
+
+/// Computes all of the above. `columns`: of each timeline.
+ReportInput ReportInputOf(const Trace& trace, std::size_t columns);
+
+}  // namespace stipple
+
+extern "C" {
+
+/// Draws the report as one self-contained HTML file. Exported by libstipple-views.so; returns 0, or
+/// 1 with the reason in `error`.
+int stipple_draw_report(const stipple::ReportInput* input, const char* path, char* error,
+                        std::size_t error_bytes);
+}
+
+#endif
