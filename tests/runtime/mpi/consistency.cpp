@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Prints what the MPI layer wrote into an archive, without ids and times, straight from format.h.
+// Properties of what the MPI layer wrote, straight from format.h: the analysis has its own
+// opinions.
 //
-//   transcript ARCHIVE            all events, per location in the order of rank, process, thread
-//   transcript --messages ARCHIVE messages and collectives only: what a polling program repeats
-//   transcript --match ARCHIVE    matches messages in posting order and adds up what collectives
-//                                 moved; exit 1 unless all match
-//   transcript --clock ARCHIVE    clock readings; exit 1 if one is further from 0, the truth
-//   between
-//                                 ranks of one machine, than half its round trip
+//   consistency ARCHIVE          each message, matched in posting order, is received with the bytes
+//                                it was sent with; requests end once; what a collective's ranks
+//                                send is what they receive
+//   consistency --clock ARCHIVE  clock readings at start and end on every rank but 0, none further
+//                                from 0, the truth on one machine, than half its round trip
 #include <algorithm>
 #include <compare>
 #include <cstdint>
@@ -45,7 +44,6 @@ struct Chunk {
 struct Process {
   std::vector<std::uint64_t> bytes;
   int rank = 0;
-  std::map<std::uint32_t, std::string> regions;
   std::map<std::uint32_t, CommunicatorText> communicators;
   std::vector<ClockSync> clock_readings;
   std::vector<Chunk> chunks;
@@ -58,12 +56,6 @@ const Record& As(const EventWord* words) {
 
 void ReadDefinition(const EventWord* words, Process& process) {
   switch (KindOf(*words)) {
-    case RecordKind::kDefineRegion: {
-      const auto& region = As<DefineRegion>(words);
-      const char* name = reinterpret_cast<const char*>(&region + 1);
-      process.regions[region.region] = std::string(name, region.name_bytes);
-      break;
-    }
     case RecordKind::kDefineWorld:
       process.rank = As<DefineWorld>(words).world_rank;
       break;
@@ -129,56 +121,6 @@ Process ReadProcess(const std::filesystem::path& path) {
 int WorldRank(const Process& process, std::uint32_t communicator, std::int32_t rank) {
   if (rank < 0) return rank;
   return process.communicators.at(communicator).members.at(static_cast<std::size_t>(rank));
-}
-
-void PrintRecord(const Process& process, const EventWord* words) {
-  switch (KindOf(*words)) {
-    case RecordKind::kMpiSend: {
-      const auto& r = As<MpiSend>(words);
-      std::printf("send %llu to %d tag %d\n", static_cast<unsigned long long>(r.bytes),
-                  WorldRank(process, r.communicator, r.receiver), r.tag);
-      break;
-    }
-    case RecordKind::kMpiReceive: {
-      const auto& r = As<MpiReceive>(words);
-      std::printf("receive %llu from %d tag %d\n", static_cast<unsigned long long>(r.bytes),
-                  WorldRank(process, r.communicator, r.sender), r.tag);
-      break;
-    }
-    case RecordKind::kMpiProbe: {
-      const auto& r = As<MpiProbe>(words);
-      std::printf("probe %llu from %d tag %d\n", static_cast<unsigned long long>(r.bytes),
-                  WorldRank(process, r.communicator, r.sender), r.tag);
-      break;
-    }
-    case RecordKind::kMpiCollective: {
-      const auto& r = As<MpiCollective>(words);
-      std::printf("collective %s root %d sent %llu received %llu\n",
-                  process.regions.at(r.region).c_str(), WorldRank(process, r.communicator, r.root),
-                  static_cast<unsigned long long>(r.bytes_sent),
-                  static_cast<unsigned long long>(r.bytes_received));
-      break;
-    }
-    default:
-      break;
-  }
-}
-
-void Print(const Process& process, bool messages_only) {
-  std::uint32_t thread = ~0u;
-  for (const Chunk& chunk : process.chunks) {
-    if (chunk.header->thread != thread) {
-      thread = chunk.header->thread;
-      std::printf("location %d 0 %u\n", process.rank, thread);
-    }
-    ForEach(chunk, [&](const EventWord* words) {
-      if (IsRecord(*words)) return PrintRecord(process, words);
-      if (messages_only) return;
-      const auto region = static_cast<std::uint32_t>(RegionOf(*words));
-      std::printf("%s %s\n", IsLeave(*words) ? "leave" : "enter",
-                  process.regions.at(region).c_str());
-    });
-  }
 }
 
 /// Messages that may not overtake each other.
@@ -275,14 +217,10 @@ int CheckClocks(const std::vector<Process>& processes) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::string_view option = argc == 3 ? argv[1] : "";
   std::vector<Process> processes;
   for (const auto& entry : std::filesystem::directory_iterator(argv[argc - 1])) {
     if (entry.path().extension() == ".stream") processes.push_back(ReadProcess(entry.path()));
   }
-  std::ranges::sort(processes, {}, &Process::rank);
-  if (option == "--match") return Match(processes);
-  if (option == "--clock") return CheckClocks(processes);
-  for (const Process& process : processes) Print(process, option == "--messages");
-  return 0;
+  const bool clock = argc == 3 && std::string_view(argv[1]) == "--clock";
+  return clock ? CheckClocks(processes) : Match(processes);
 }
