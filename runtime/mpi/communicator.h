@@ -57,6 +57,9 @@ void BeginCommunicators();
 /// What is known of `comm`; defined on the spot if it came from nowhere. id 0 if it is null.
 Communicator Find(MPI_Comm comm);
 
+/// Whether a message can go to `rank`: not MPI_PROC_NULL, and not a mistake that MPI will report.
+inline bool IsPeer(const Communicator& on, int rank) { return rank >= 0 && rank < on.peer_count; }
+
 /// A rank of `comm`'s peers as recorded.
 inline int32_t PeerOf(const Communicator& on, int rank) { return rank + on.peer_offset; }
 
