@@ -21,4 +21,4 @@ export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 "$1" run -o run.stipple --clock exact -- mpirun --oversubscribe -n 3 "$here" rank "$2"
 "$1" check run.stipple
 "$1" info run.stipple | tee info.txt
-grep -q '2 computers, synchronised to [0-9.]* us' info.txt
+grep -q '2 computers, synchronised to [0-9.]* [mun]*s' info.txt
