@@ -18,6 +18,11 @@ namespace {
 
 constexpr std::uint64_t kFirstExtentBytes = 256 * 1024;
 constexpr std::uint64_t kLargestExtentBytes = 16 * 1024 * 1024;
+// A long stream must not push the program's own files out of memory, and pages that are used again
+// cost a tenth of fresh ones in a virtual machine: what is older than this is written out and
+// dropped from the page cache, batch by batch.
+constexpr std::uint64_t kBatchBytes = 8 * 1024 * 1024;
+constexpr std::uint64_t kCachedBatches = 6;
 constexpr int kHighDescriptor = 700;  // out of the way of programs that count on low numbers
 
 bool IsOurs(const StreamFile& file, int descriptor) {
@@ -102,6 +107,17 @@ int Grow(StreamFile& file, std::uint64_t bytes) {
   return 0;
 }
 
+/// `batch` is full: asks for it to be written, and drops one that was asked for long ago. Neither
+/// waits for the disk.
+void DropBehind(int descriptor, std::uint64_t batch) {
+  constexpr long kStartWriting = 2, kNoNeed = 4;
+  const auto start = static_cast<long>(batch * kBatchBytes);
+  Syscall(SYS_sync_file_range, descriptor, start, kBatchBytes, kStartWriting);
+  if (batch < kCachedBatches) return;
+  Syscall(SYS_fadvise64, descriptor, start - static_cast<long>(kCachedBatches * kBatchBytes),
+          kBatchBytes, kNoNeed);
+}
+
 }  // namespace
 
 int CreateFile(StreamFile& file, const char* archive, const char* host_name, std::uint32_t pid,
@@ -135,6 +151,23 @@ char* TakeBytes(StreamFile& file, std::size_t bytes, int* error) {
   file.window += bytes;
   file.used += bytes;
   return taken;
+}
+
+int WriteBytes(StreamFile& file, std::uint64_t offset, const char* from, std::size_t bytes) {
+  const int descriptor = Descriptor(file);
+  if (descriptor < 0) return -descriptor;
+  const std::uint64_t first_batch = offset / kBatchBytes;
+  while (bytes > 0) {
+    const long written = Syscall(SYS_pwrite64, descriptor, Argument(from), static_cast<long>(bytes),
+                                 static_cast<long>(offset));
+    if (written == -EINTR) continue;
+    if (written <= 0) return written == 0 ? EIO : static_cast<int>(-written);
+    offset += static_cast<std::uint64_t>(written);
+    from += written;
+    bytes -= static_cast<std::size_t>(written);
+  }
+  if (offset / kBatchBytes != first_batch) DropBehind(descriptor, first_batch);
+  return 0;
 }
 
 void TrimFile(StreamFile& file) {

@@ -21,7 +21,7 @@ struct StreamFile {
   std::uint64_t allocated;
   char* window;  // where byte `used` is mapped
   std::uint64_t next_extent_bytes;
-  bool closing;  // no more extents ahead of need
+  bool closing;      // no more extents ahead of need
   Line<kPathBytes> path;
 };
 
@@ -32,6 +32,9 @@ int CreateFile(StreamFile& file, const char* archive, const char* host_name, std
 /// Takes the next `bytes` (a multiple of kGranuleBytes) of the file, mapped and zero; null and an
 /// errno in `error` when the file cannot grow. The lock is held.
 char* TakeBytes(StreamFile& file, std::size_t bytes, int* error);
+
+/// Writes into bytes taken before, at `offset`; 0 or an errno.
+int WriteBytes(StreamFile& file, std::uint64_t offset, const char* from, std::size_t bytes);
 
 /// Cuts off what was allocated ahead; from now on the file grows only by what is taken.
 void TrimFile(StreamFile& file);
