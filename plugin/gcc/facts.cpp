@@ -107,7 +107,7 @@ FunctionFacts FactsOf(function* fun) {
   facts.file = RegionOf(fun).file;
   facts.in_system_header = DECL_IN_SYSTEM_HEADER(fun->decl);
   // The `main` that gfortran puts around the main program.
-  facts.artificial = DECL_ARTIFICIAL(fun->decl) && MAIN_NAME_P(DECL_NAME(fun->decl));
+  facts.artificial = lang_GNU_Fortran() && facts.linkage_name == "main";
   facts.wish = WishOf(fun->decl);
   if (fun->cfg != nullptr)
     CountGraph(fun, facts);

@@ -37,6 +37,7 @@
 #include "cgraph.h"
 #include "attribs.h"
 #include "diagnostic.h"
+#include "langhooks.h"
 #include "output.h"
 #include "stringpool.h"
 #include "builtins.h"

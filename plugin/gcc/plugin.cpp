@@ -78,11 +78,17 @@ void RegisterAttributes(void*, void*) {
   for (const attribute_spec& attribute : kAttributes) register_attribute(&attribute);
 }
 
-// The number is read by a test from the plugin's bytes.
-constexpr char kBuiltFor[] = "stipple plugin for GCC " STIPPLE_GCC_VERSION;
+// A text in the plugin's file, so that one can be asked what it is for, and a test can change it.
+constexpr std::string_view kBuiltFor = "stipple plugin for GCC " STIPPLE_GCC_VERSION;
+
+std::string BuiltFor() {
+  const char* text = kBuiltFor.data();
+  asm("" : "+r"(text));  // read the file's text, not what the compiler knows of it
+  return text + strlen("stipple plugin for GCC ");
+}
 
 bool IsRightCompiler(plugin_gcc_version* compiler) {
-  const std::string built_for = std::string(kBuiltFor).substr(strlen("stipple plugin for GCC "));
+  const std::string built_for = BuiltFor();
   const std::string is = compiler->basever;
   if (built_for == is && plugin_default_version_check(compiler, &gcc_version)) return true;
   if (built_for == is) {

@@ -128,7 +128,10 @@ void StartToggling() {
   setitimer(ITIMER_REAL, &every, nullptr);
 }
 
-void BecomeChild() { process = __atomic_add_fetch(process_count, 1, __ATOMIC_RELAXED); }
+void BecomeChild() {
+  process = __atomic_add_fetch(process_count, 1, __ATOMIC_RELAXED);
+  thread_count = 0;
+}
 
 void Begin() {
   const char* word = getenv("STIPPLE_RECORDER_MODE");
