@@ -50,7 +50,7 @@ th{font-weight:600;font-size:12px;color:var(--secondary);text-align:left;vertica
 td,tbody th{padding:5px 12px 5px 0;border-bottom:1px solid var(--grid);vertical-align:top;text-align:left}
 tbody th{font-weight:500;font-size:13px;color:var(--ink)}
 .n{text-align:right;white-space:nowrap}
-tbody th .where{display:block;color:var(--secondary);font-size:11.5px;font-weight:400}
+td.where{color:var(--secondary);font-size:12px;max-width:16em;overflow-wrap:anywhere}
 tbody th .name{overflow-wrap:anywhere}
 td.share{width:24%;padding-right:0}
 td.share span{display:flex;align-items:center;gap:8px;white-space:nowrap}
@@ -163,7 +163,7 @@ char ShareLetter(double share) {
   return kLetters[static_cast<std::size_t>(std::clamp(std::lround(share * 63), 0L, 63L))];
 }
 
-constexpr std::size_t kHoverLetters = 80'000;
+constexpr std::size_t kHoverLetters = 60'000;
 constexpr std::size_t kHoverColumns = 400;
 
 }  // namespace

@@ -19,7 +19,7 @@ std::string_view MonoPatterns();
 /// What the page can do beyond being read: values under the pointer, tables sorted by a column.
 std::string_view PageScript();
 
-/// Shares per row and column for the pointer, as JSON; at most about 80 kB.
+/// Shares per row and column for the pointer, as JSON; at most about 60 kB.
 std::string HoverData(const ViewInput& input);
 
 }  // namespace stipple

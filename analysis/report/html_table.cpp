@@ -19,7 +19,7 @@ constexpr std::size_t kMostFunctions = 30;
 constexpr std::size_t kMostWaits = 10;
 constexpr std::size_t kMostNumbers = 33;  // rows of a folded table
 constexpr std::size_t kNameCharacters = 88;
-constexpr std::size_t kMostTitle = 2000;  // some instances have names of many kilobytes
+constexpr std::size_t kMostTitle = 600;  // some instances have names of many kilobytes
 
 using Row = std::vector<Cell>;
 
@@ -53,6 +53,16 @@ std::string FileName(const std::string& path) {
   return slash == path.npos ? path : path.substr(slash + 1);
 }
 
+/// File and line, the folder in the tooltip.
+std::string PlaceCell(const Table& profile, const Row& row) {
+  const std::string file = CellText(CellOf(profile, row, "file"));
+  const std::string line = CellText(CellOf(profile, row, "line"));
+  if (file.empty()) return "<td class=\"where\" data-v=\"\"></td>";
+  const std::string place = FileName(file) + (line.empty() || line == "0" ? "" : ":" + line);
+  return fmt::format("<td class=\"where\" data-v=\"{0}\" title=\"{1}\">{0}</td>",
+                     EscapeMarkup(place), EscapeMarkup(file));
+}
+
 std::string FunctionCell(const Table& profile, const Row& row) {
   const std::string region = CellText(CellOf(profile, row, "region"));
   const std::string shown = ShortenMiddle(region, kNameCharacters);
@@ -61,13 +71,7 @@ std::string FunctionCell(const Table& profile, const Row& row) {
   if (shown != CleanUtf8(region))
     cell += fmt::format(" title=\"{}\"", EscapeMarkup(ShortenMiddle(region, kMostTitle)));
   cell += fmt::format(">{}</span>", EscapeMarkup(shown));
-  const std::string file = CellText(CellOf(profile, row, "file"));
-  const std::string line = CellText(CellOf(profile, row, "line"));
-  if (!file.empty())
-    cell +=
-        fmt::format("<span class=\"where\" title=\"{}\">{}{}</span>", EscapeMarkup(file),
-                    EscapeMarkup(FileName(file)), line.empty() || line == "0" ? "" : ":" + line);
-  return cell + "</th>";
+  return cell + "</th>" + PlaceCell(profile, row);
 }
 
 std::string ProfileRow(const Table& profile, const Row& row, double whole, double largest) {
@@ -106,7 +110,8 @@ std::string ProfileSection(const Table& profile) {
       "<h2 id=\"h-profile\">Functions</h2><span class=\"note\">summed over all ranks \u00b7 "
       "exclusive: "
       "without the functions called</span></header>\n<table class=\"sortable\"><thead><tr>"
-      "<th scope=\"col\" data-sort=\"text\">function</th><th scope=\"col\" class=\"n\" "
+      "<th scope=\"col\" data-sort=\"text\">function</th><th scope=\"col\" "
+      "data-sort=\"text\">file</th><th scope=\"col\" class=\"n\" "
       "data-sort=\"number\">calls</th>"
       "<th scope=\"col\" class=\"n\" data-sort=\"number\">inclusive</th>"
       "<th scope=\"col\" class=\"n\" data-sort=\"number\" aria-sort=\"descending\">exclusive</th>"

@@ -27,7 +27,7 @@ struct Tick {
 
 /// Round values, at most one per `spacing` pixels; the unit stands on the last tick only. Where the
 /// span is tiny beside its start, labels count from the start: "+0", "+20", "+40 µs".
-std::vector<Tick> TimeTicks(const TimeAxis& axis, double spacing = 90);
+std::vector<Tick> TimeTicks(const TimeAxis& axis, double spacing = 76);
 
 /// Steps of 1, 2 or 5 times a power of ten, so that `span` takes at most `count` of them.
 double RoundStep(double span, double count);

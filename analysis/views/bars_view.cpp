@@ -30,15 +30,21 @@ std::vector<StateShares> SharesOfGrid(const RowGrid& grid, const std::vector<Sta
   return of_rows;
 }
 
-/// Bars grow from the left: user, system, message; idle is what remains.
-void AddBar(Layer& layer, const GridRow& row, const StateShares& shares) {
-  double x = 0;
-  for (std::size_t s = 0; s < kStateCount; ++s) {
-    const double width = std::min(static_cast<double>(shares[s]) * kBarWidth, kBarWidth - x);
-    if (width >= 0.05)
-      layer.shapes.emplace_back(RectShape{x, row.y, width, row.height, kStateColours[s], {}});
-    x += std::max(0.0, width);
-  }
+/// Bars grow from the left: user, system, message; idle is what remains. State by state, so that
+/// bars of one colour become one element.
+Layer Bars(const RowGrid& grid, const std::vector<StateShares>& of_rows) {
+  Layer layer{"bars", {}};
+  std::vector<double> ends(of_rows.size(), 0);
+  for (std::size_t s = 0; s < kStateCount; ++s)
+    for (std::size_t i = 0; i < of_rows.size(); ++i) {
+      const double share = std::max(0.0, static_cast<double>(of_rows[i][s]));
+      const double begin = ends[i], end = std::min(begin + share * kBarWidth, kBarWidth);
+      ends[i] = end;
+      if (end - begin < 0.05) continue;
+      layer.shapes.emplace_back(
+          RectShape{begin, grid.rows[i].y, end - begin, grid.rows[i].height, kStateColours[s], {}});
+    }
+  return layer;
 }
 
 struct Spread {
@@ -142,10 +148,9 @@ Scene StateBarsView(const ViewInput& input) {
   scene.description =
       "One bar per rank: shares of user computation, system, message and idle time.";
   scene.note = "computing";
-  Layer bars{"bars", {}}, values{"labels", {}};
+  Layer values{"labels", {}};
   const std::vector<StateShares> of_rows = SharesOfGrid(grid, shares);
   for (std::size_t i = 0; i < grid.rows.size(); ++i) {
-    AddBar(bars, grid.rows[i], of_rows[i]);
     if (grid.rows[i].label.empty()) continue;
     const TextStyle style{.size = grid.label_size,
                           .colour = kInk,
@@ -154,7 +159,7 @@ Scene StateBarsView(const ViewInput& input) {
     values.shapes.emplace_back(
         TextShape{kSideWidth, grid.middle(i), FormatPercent(of_rows[i][0]), style});
   }
-  scene.layers = {std::move(bars), std::move(values)};
+  scene.layers = {Bars(grid, of_rows), std::move(values)};
   if (shares.size() > 1)
     scene.layers.push_back(MeanLine(input, grid, ComputingOf(*input.timeline, shares)));
   return scene;

@@ -122,7 +122,8 @@ Scene DetailView(const ViewInput& input) {
       fmt::format("States of each {} with {} messages as lines from sender to receiver.",
                   NounFor(detail), FormatCount(static_cast<std::int64_t>(detail.message_count)));
   scene.note = NoteFor(detail, marks);
-  scene.layers.push_back(StateLayer(MakeStateRuns(detail, grid, axis.width()), grid, axis));
+  scene.layers.push_back(
+      StateLayer(MakeStateRuns(detail, grid, axis.width(), kQuadBudget), grid, axis));
   scene.layers.push_back(RowLabels(grid, axis.left - 10));
   Layer time{"axis", {}};
   AddTimeAxis(time, axis, bottom);

@@ -48,6 +48,12 @@ Window WindowFor(const Timeline& timeline, std::size_t columns) {
                                                 seconds / span * static_cast<double>(columns))))};
 }
 
+/// "0.5 s": in the unit of the axis.
+std::string WindowText(const Timeline& timeline, const Window& window) {
+  const Unit unit = TimeUnitFor(timeline.end_s - timeline.begin_s);
+  return fmt::format("{:g} {}", window.seconds / unit.size, unit.name);
+}
+
 struct Utilisation {
   Curve mean, least, most, since_start;
 };
@@ -166,8 +172,9 @@ Scene UtilisationView(const ViewInput& input) {
       "run.",
       NounFor(*input.timeline), FormatPercent(load.since_start.back()));
   scene.note = fmt::format(
-      "mean of {}s in {} \u00b7 band: least to most busy \u00b7 dashed: since the start",
-      NounFor(*input.timeline), FormatSeconds(WindowFor(*input.timeline, kCurveColumns).seconds));
+      "mean of {}s, {} window \u00b7 band: least to most busy \u00b7 dashed: since the start",
+      NounFor(*input.timeline),
+      WindowText(*input.timeline, WindowFor(*input.timeline, kCurveColumns)));
   scene.layers.push_back(frame.Grid("50%", "100%"));
   scene.layers.push_back(Layer{"band", {frame.Between(load.least, load.most, kBand)}});
   scene.layers.push_back(
@@ -185,14 +192,13 @@ Scene MessageLoadView(const ViewInput& input) {
   const Curve load = Smoothed(BytesPerSecond(*input.timeline, kCurveColumns), window.columns);
   const double largest = std::max(1.0, *std::ranges::max_element(load));
   CurveFrame frame{MainAxis(input), 0};
-  const double step = RoundStep(largest, 2);
-  frame.largest = std::max(step * 2, 1.0);
+  frame.largest = RoundStep(largest, 1);
   const Unit unit = ByteUnitFor(frame.largest);
   scene.height = kCurveTop + kCurveHeight + kAxisHeight;
   scene.title = "Message load";
   scene.description =
       fmt::format("Bytes sent per second over time; at most {} per second.", FormatBytes(largest));
-  scene.note = fmt::format("{}/s in {}", unit.name, FormatSeconds(window.seconds));
+  scene.note = fmt::format("{}/s, {} window", unit.name, WindowText(*input.timeline, window));
   scene.layers.push_back(frame.Grid(FormatShort(frame.largest / 2 / unit.size),
                                     FormatShort(frame.largest / unit.size)));
   const Curve nothing(load.size(), 0);

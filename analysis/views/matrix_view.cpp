@@ -82,7 +82,7 @@ MatrixLayout LayoutOf(const MatrixModel& model) {
   const auto count = static_cast<double>(model.groups.size());
   const double room = kMatrixWidth - layout.left - kHostGap;
   layout.cell = std::min(kLargestCell, room / count);
-  if (layout.cell >= 6) layout.cell = std::floor(layout.cell);
+  layout.cell = std::max(1.0, std::floor(layout.cell));
   layout.gap = layout.cell >= 6 ? 1 : 0;
   double numbers = 0;  // the widest of what stands above the columns; the host has its own place
   for (const CellGroup& group : model.groups)
@@ -124,6 +124,12 @@ std::string CountText(double value) {
   return FormatCount(std::llround(value)) + (std::llround(value) == 1 ? " message" : " messages");
 }
 
+/// Orders rectangles by colour.
+int FillKey(const Shape& shape) {
+  const Colour fill = std::get<RectShape>(shape).fill;
+  return fill.red << 16 | fill.green << 8 | fill.blue;
+}
+
 /// Cells of equal colour side by side become one rectangle when there is no gap between them.
 void AddCells(Layer& layer, const MatrixModel& model, const MatrixLayout& layout, ValueText text) {
   const bool tooltips = model.groups.size() <= kMostTooltips;
@@ -147,6 +153,10 @@ void AddCells(Layer& layer, const MatrixModel& model, const MatrixLayout& layout
       layer.shapes.emplace_back(std::move(rect));
       k += run;
     }
+  // Small cells of one colour one after the other become one element.
+  if (layout.gap == 0)
+    std::ranges::stable_sort(
+        layer.shapes, [](const Shape& a, const Shape& b) { return FillKey(a) < FillKey(b); });
 }
 
 Layer Numbers(const MatrixModel& model, const MatrixLayout& layout, const CellNumbers& numbers) {
@@ -212,7 +222,9 @@ Layer Cells(const MatrixModel& model, const MatrixLayout& layout, ValueText text
                                           height + 2 - layout.gap,
                                           kGrid,
                                           {}});
-  AddCells(layer, model, layout, text);
+  Layer cells{"cells", {}};
+  AddCells(cells, model, layout, text);
+  layer.shapes.insert(layer.shapes.end(), cells.shapes.begin(), cells.shapes.end());
   return layer;
 }
 

@@ -13,7 +13,7 @@ namespace stipple {
 namespace {
 
 constexpr int kLeastSteps = 4;
-constexpr std::size_t kLeastColumns = 16;
+constexpr std::size_t kLeastColumns = 12;
 
 StateRun RunOf(const StateShares& shares, int steps) {
   StateRun run;
@@ -151,13 +151,13 @@ std::vector<StateShares> AverageColumns(std::span<const TimelineRow> rows, std::
   return averaged;
 }
 
-StateRuns MakeStateRuns(const Timeline& timeline, const RowGrid& grid, double width_pixels) {
+StateRuns MakeStateRuns(const Timeline& timeline, const RowGrid& grid, double width_pixels,
+                        std::size_t budget) {
   std::size_t most = 1;
   for (const TimelineRow& row : timeline.rows) most = std::max(most, row.columns.size());
   std::size_t columns = std::min(most, static_cast<std::size_t>(std::max(1.0, width_pixels)));
   const double height = grid.rows.empty() ? 1 : grid.rows.front().height;
   const int finest = std::clamp(static_cast<int>(height), kLeastSteps, 28);
-  const std::size_t budget = QuadBudgetFor(grid.rows.size());
   for (;;) {
     StateRuns runs;
     for (int steps = finest; steps >= kLeastSteps; steps = steps > 8 ? 8 : steps / 2) {

@@ -19,7 +19,7 @@ namespace stipple {
 /// Rectangles a timeline may need before merging into outlines; 16 ms a frame in a window.
 inline constexpr std::size_t kQuadBudget = 4000;
 /// With many rows the budget grows: fewer quads a row than this would hide the pattern.
-inline constexpr std::size_t kQuadsPerRow = 64;
+inline constexpr std::size_t kQuadsPerRow = 56;
 constexpr std::size_t QuadBudgetFor(std::size_t rows) {
   return rows * kQuadsPerRow > kQuadBudget ? rows * kQuadsPerRow : kQuadBudget;
 }
@@ -43,7 +43,8 @@ struct StateRuns {
 /// `rows` averaged into `columns` equal columns.
 std::vector<StateShares> AverageColumns(std::span<const TimelineRow> rows, std::size_t columns);
 
-StateRuns MakeStateRuns(const Timeline& timeline, const RowGrid& grid, double width_pixels);
+StateRuns MakeStateRuns(const Timeline& timeline, const RowGrid& grid, double width_pixels,
+                        std::size_t budget);
 
 /// One layer: idle behind, then user, system and message pieces of all rows.
 Layer StateLayer(const StateRuns& runs, const RowGrid& grid, const TimeAxis& axis);

@@ -76,7 +76,8 @@ Scene TimelineView(const ViewInput& input) {
   scene.note = grid.ranks_per_row == 1
                    ? "column height = share of the column's time"
                    : fmt::format("each row is the mean of {} ranks", grid.ranks_per_row);
-  scene.layers.push_back(StateLayer(MakeStateRuns(timeline, grid, axis.width()), grid, axis));
+  scene.layers.push_back(StateLayer(
+      MakeStateRuns(timeline, grid, axis.width(), QuadBudgetFor(grid.rows.size())), grid, axis));
   scene.layers.push_back(RowLabels(grid, axis.left - 10));
   Layer time{"axis", {}};
   AddTimeAxis(time, axis, bottom);
