@@ -95,12 +95,9 @@ std::string Overview(const ReportInput& input, const ViewInput& views) {
 std::string Communication(const ReportInput& input, const ViewInput& views) {
   std::string panels;
   if (input.detail.message_count > 0)
-    panels += PanelText({fmt::format("Detail from {}", FormatSeconds(input.detail.begin_s)),
-                         "detail",
-                         false,
-                         {},
-                         {}},
-                        DetailView(views));
+    panels += PanelText(
+        {"Detail " + FormatSpan(input.detail.begin_s, input.detail.end_s), "detail", false, {}, {}},
+        DetailView(views));
   panels += PanelText({"Messages", "matrix", true, {}, MatrixDetails(input.messages, false)},
                       MessageMatrixView(views));
   panels += PanelText({"Volume", "matrix", true, {}, MatrixDetails(input.volume, true)},

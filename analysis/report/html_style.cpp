@@ -134,7 +134,7 @@ std::string DarkSheet() {
   for (const DarkColour& colour : kDark) sheet += Recolour(Hex(colour.light), colour.dark);
   for (int step = 1; step <= kRampSteps; ++step)
     sheet +=
-        fmt::format("svg [fill=\"{}\"]{{fill:{}}}", Hex(RampColour(step)), Hex(DarkRamp(step)));
+        fmt::format(".cells [fill=\"{}\"]{{fill:{}}}", Hex(RampColour(step)), Hex(DarkRamp(step)));
   for (std::size_t s = 0; s < kStateCount; ++s)
     sheet += fmt::format(".legend .s{}{{background:{}!important}}", s, kDark[13 + s].dark);
   return sheet + "}\n";

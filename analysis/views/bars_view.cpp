@@ -111,6 +111,7 @@ std::string WaitedForLabel(const WaitedFor& wait, std::string_view noun) {
 /// One culprit: name, bar, the region it was in where there is room, and the time.
 struct WaitRow {
   double bar_left, scale, unit, y;
+  int decimals;
   bool culprit;
 
   void Add(Layer& labels, Layer& bars, const WaitedFor& wait, const std::string& label) const {
@@ -122,7 +123,7 @@ struct WaitRow {
                   {.size = 13, .colour = kInk, .bold = culprit, .anchor = Anchor::kEnd}});
     bars.shapes.emplace_back(
         RectShape{bar_left, middle - 9, width, 18, culprit ? kAccent : kQuietBar, {}});
-    const std::string value = FormatThreeDigits(wait.seconds / unit);
+    const std::string value = fmt::format("{:.{}f}", wait.seconds / unit, decimals);
     labels.shapes.emplace_back(
         TextShape{kSideWidth,
                   middle,
@@ -183,7 +184,8 @@ Scene WaitedForView(const ViewInput& input) {
   double y = 0;
   for (const WaitedFor& wait : waits) {
     const bool culprit = wait.rank >= 0 && wait.rank == input.finding->culprit;
-    const WaitRow row{bar_left, (kSideWidth - 64 - bar_left) / largest, unit.size, y, culprit};
+    const WaitRow row{bar_left, (kSideWidth - 64 - bar_left) / largest, unit.size,
+                      y,        DecimalsFor(largest / unit.size),       culprit};
     row.Add(labels, bars, wait, WaitedForLabel(wait, noun));
     y += kWaitRow;
   }

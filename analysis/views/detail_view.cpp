@@ -18,12 +18,13 @@ namespace {
 
 constexpr std::size_t kMostLines = 400;  // beyond that lines hide the states
 constexpr double kMarkSize = 11;
-constexpr double kMarkSpacing = 10;  // marks nearer than this become one numeral
+constexpr double kMarkSpacing = 12;  // marks nearer than this become one numeral
 constexpr double kLeastPitchForMarks = 24;
 constexpr double kTop = 18;
 
 RowGridLimits DetailLimits(std::size_t rows) {
-  RowGridLimits limits{.top = kTop, .max_pitch = 36, .max_height = 600, .fill = 0.56};
+  RowGridLimits limits{
+      .top = kTop, .max_pitch = 36, .max_height = 430, .fill = 0.56, .max_rows = 160};
   if (limits.max_height / static_cast<double>(std::max<std::size_t>(rows, 1)) < kLeastPitchForMarks)
     limits.fill = 0.74;  // no room is kept for marks
   return limits;
@@ -50,6 +51,9 @@ std::vector<std::vector<EventMark>> MarksByRow(const Timeline& detail, const Row
   return marks;
 }
 
+/// Lines arrive from the left and leave to the right: letters stand beside them.
+double Aside(char letter) { return letter == 'r' ? 3 : -2; }
+
 /// Letters where they stand alone, else how many there are; never nearer than kMarkSpacing.
 void AddMarks(Layer& layer, const std::vector<EventMark>& marks, double y) {
   for (std::size_t i = 0; i < marks.size();) {
@@ -58,7 +62,8 @@ void AddMarks(Layer& layer, const std::vector<EventMark>& marks, double y) {
     while (i + count < marks.size() && marks[i + count].x - first < kMarkSpacing) ++count;
     const std::string text =
         count == 1 ? std::string(1, marks[i].letter) : FormatShort(static_cast<double>(count));
-    const double x = count == 1 ? first : (first + marks[i + count - 1].x) / 2;
+    const double x =
+        count == 1 ? first + Aside(marks[i].letter) : (first + marks[i + count - 1].x) / 2;
     layer.shapes.emplace_back(TextShape{
         x, y, text, {.size = kMarkSize, .colour = kInk, .bold = true, .anchor = Anchor::kMiddle}});
     i += count;
@@ -116,8 +121,7 @@ Scene DetailView(const ViewInput& input) {
   const bool marks = grid.pitch >= kLeastPitchForMarks && !detail.messages.empty();
   const double bottom = grid.rows.front().y + grid.height + 6;
   scene.height = std::ceil(bottom + kAxisHeight);
-  scene.title = fmt::format("Detail, {} from {}", FormatSeconds(detail.end_s - detail.begin_s),
-                            FormatSeconds(detail.begin_s));
+  scene.title = "Detail " + FormatSpan(detail.begin_s, detail.end_s);
   scene.description =
       fmt::format("States of each {} with {} messages as lines from sender to receiver.",
                   NounFor(detail), FormatCount(static_cast<std::int64_t>(detail.message_count)));

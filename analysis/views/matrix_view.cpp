@@ -17,7 +17,7 @@
 namespace stipple {
 namespace {
 
-constexpr std::size_t kMostCells = 128;    // a side
+constexpr std::size_t kMostCells = 130;    // a side
 constexpr std::size_t kMostTooltips = 33;  // a side; more would fill the page
 constexpr double kLargestCell = 44;
 constexpr double kTop = 24;         // receivers' names

@@ -3,20 +3,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
 namespace stipple {
-namespace {
-
-/// Decimals that leave three digits in all.
 int DecimalsFor(double number) {
   const double size = std::fabs(number);
   if (size >= 99.95) return 0;
   return size >= 9.995 ? 1 : 2;
 }
-
-}  // namespace
 
 Unit TimeUnitFor(double seconds) {
   constexpr Unit kUnits[] = {{"s", 1}, {"ms", 1e-3}, {"\u00b5s", 1e-6}, {"ns", 1e-9}};
@@ -41,6 +37,14 @@ std::string FormatThreeDigits(double number) {
 std::string FormatSeconds(double seconds) {
   const Unit unit = TimeUnitFor(seconds);
   return FormatThreeDigits(seconds / unit.size) + ' ' + std::string(unit.name);
+}
+
+std::string FormatSpan(double begin_s, double end_s) {
+  const Unit unit = TimeUnitFor(end_s);
+  const double span = std::max((end_s - begin_s) / unit.size, 1e-12);
+  const int decimals = std::clamp(2 - static_cast<int>(std::floor(std::log10(span))), 0, 9);
+  return fmt::format("{:.{}f}\u2013{:.{}f} {}", begin_s / unit.size, decimals, end_s / unit.size,
+                     decimals, unit.name);
 }
 
 std::string FormatBytes(double bytes) {

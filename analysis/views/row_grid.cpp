@@ -29,7 +29,7 @@ std::vector<GridRow> GroupRows(std::span<const TimelineRow> rows, std::size_t ra
 void PlaceRows(RowGrid& grid, std::span<const TimelineRow> rows, const RowGridLimits& limits) {
   const double per_row = std::floor(limits.max_height / static_cast<double>(grid.rows.size()));
   grid.pitch = std::clamp(per_row, kMinPitch, limits.max_pitch);
-  const double gap = grid.pitch < 4 ? 0 : std::max(1.0, std::round(grid.pitch * (1 - limits.fill)));
+  const double gap = grid.pitch < 6 ? 0 : std::max(1.0, std::round(grid.pitch * (1 - limits.fill)));
   double y = limits.top;
   for (GridRow& row : grid.rows) {
     if (rows[row.first].is_host && &row != &grid.rows.front()) y += std::max(5.0, gap);
@@ -92,7 +92,7 @@ std::string RowLabel(const TimelineRow& row, bool has_host) {
 RowGrid MakeRowGrid(std::span<const TimelineRow> rows, int culprit, const RowGridLimits& limits) {
   RowGrid grid;
   if (rows.empty()) return grid;
-  while ((rows.size() + grid.ranks_per_row - 1) / grid.ranks_per_row > kMaxDrawnRows)
+  while ((rows.size() + grid.ranks_per_row - 1) / grid.ranks_per_row > limits.max_rows)
     grid.ranks_per_row *= 2;
   grid.rows = GroupRows(rows, grid.ranks_per_row);
   PlaceRows(grid, rows, limits);

@@ -44,6 +44,7 @@ struct RowGridLimits {
   double max_pitch = 39;
   double max_height = 700;
   double fill = 0.74;  // share of the pitch that is not gap
+  std::size_t max_rows = kMaxDrawnRows;
 };
 
 /// `culprit` is a world rank whose label is always shown, in bold; -1: none.

@@ -4,6 +4,7 @@
 #ifndef STIPPLE_ANALYSIS_VIEWS_STATE_RUNS_H
 #define STIPPLE_ANALYSIS_VIEWS_STATE_RUNS_H
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
@@ -16,12 +17,14 @@
 
 namespace stipple {
 
-/// Rectangles a timeline may need before merging into outlines; 16 ms a frame in a window.
+/// Rectangles a timeline may need before merging into outlines: 4000 take 16 ms a frame in a
+/// window.
 inline constexpr std::size_t kQuadBudget = 4000;
-/// With many rows the budget grows: fewer quads a row than this would hide the pattern.
-inline constexpr std::size_t kQuadsPerRow = 56;
+/// With many rows the budget grows, else too few columns would be left to show a pattern.
+inline constexpr std::size_t kQuadsPerRow = 160;
+inline constexpr std::size_t kLargestQuadBudget = 16000;  // about 200 kB of SVG
 constexpr std::size_t QuadBudgetFor(std::size_t rows) {
-  return rows * kQuadsPerRow > kQuadBudget ? rows * kQuadsPerRow : kQuadBudget;
+  return std::clamp(rows * kQuadsPerRow, kQuadBudget, kLargestQuadBudget);
 }
 
 /// Columns [begin, end) that look the same. `top[s]` is the upper edge of state s in steps, stacked

@@ -217,7 +217,10 @@ std::string WriteSvg(const Scene& scene, vtkXMLDataElement* root, const SvgOptio
       fmt::format("<title id=\"{0}-title\">{1}</title><desc id=\"{0}-description\">{2}</desc>\n",
                   scene.name, EscapeMarkup(scene.title), EscapeMarkup(scene.description));
   // Sharp edges for areas only; lines and text stay smooth.
-  text += "<style>.states path,.cells path,.bars path{shape-rendering:crispEdges}</style>\n";
+  text +=
+      "<style>.states path,.cells path,.bars path{shape-rendering:crispEdges}"
+      ".letters text,.marks "
+      "text{paint-order:stroke;stroke:var(--ground,#fff);stroke-width:3px}</style>\n";
   for (int i = 0; i < root->GetNumberOfNestedElements(); ++i)
     text += GroupText(root->GetNestedElement(i));
   return text + "</svg>\n";
