@@ -57,8 +57,11 @@ std::string Headline(const ReportInput& input) {
 
 /// Facts in one line; what was lost stands out.
 std::string FactsLine(const ReportInput& input) {
-  std::string text = "<p class=\"facts\">" + EscapeMarkup(input.title);
-  for (const std::string& fact : input.facts) text += " \u00b7 " + EscapeMarkup(fact);
+  std::string text = "<p class=\"facts\">";
+  // Without a finding the title is the headline already.
+  if (!input.finding.sentence.empty()) text += EscapeMarkup(input.title) + " \u00b7 ";
+  for (const std::string& fact : input.facts)
+    text += (&fact == &input.facts.front() ? "" : " \u00b7 ") + EscapeMarkup(fact);
   if (!input.health.empty()) text += " \u00b7 <b>" + EscapeMarkup(input.health.front()) + "</b>";
   if (input.health.size() > 1)
     text += fmt::format(" <a href=\"#quality\">and {} more</a>", input.health.size() - 1);
@@ -77,9 +80,10 @@ std::string Overview(const ReportInput& input, const ViewInput& views) {
   if (!HasRows(views.timeline)) return {};
   const std::string noun(NounFor(input.timeline));
   std::string text = "<div class=\"line\">";
-  text += PanelText({fmt::format("State of each {}", noun), "main", true, Legend(), {}},
+  const bool one = input.timeline.rows.size() == 1;
+  text += PanelText({one ? "State over time" : "State of each " + noun, "main", true, Legend(), {}},
                     TimelineView(views));
-  text += PanelText({fmt::format("Whole run, by {}", noun), "side", true, {}, {}},
+  text += PanelText({one ? "Whole run" : "Whole run, by " + noun, "side", true, {}, {}},
                     StateBarsView(views));
   text += "</div>\n";
   const std::string curves =

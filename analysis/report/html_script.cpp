@@ -42,7 +42,7 @@ constexpr std::string_view kScript = R"js(
   tip.id = "tip"; tip.hidden = true; tip.setAttribute("role", "status");
   figure.appendChild(tip);
   var lines = Array.from(document.querySelectorAll(".main svg")).map(function (panel) {
-    var line = document.createElementNS("http://www.w3.org/2000/svg", "path");
+    var line = document.createElementNS(svg.namespaceURI, "path");
     line.setAttribute("class", "cursor");
     panel.appendChild(line);
     return [panel, line];

@@ -64,7 +64,9 @@ th[aria-sort=ascending] button::after{content:" \2191"}
 .more{color:var(--secondary);font-size:12.5px;margin-top:8px}
 code{font:12px ui-monospace,"DejaVu Sans Mono",monospace;background:var(--soft);padding:1px 5px;border-radius:3px}
 details{margin-top:10px;font-size:12.5px;color:var(--secondary)}
+main>details{margin:-8px 0 26px}
 summary{cursor:pointer}
+.legend .s3{box-shadow:inset 0 0 0 1px var(--hair)}
 details table{width:auto;margin-top:8px;font-size:12px}
 details .scroll{overflow-x:auto}
 .quality{margin-top:26px;border-top:1px solid var(--grid);padding-top:12px;color:var(--secondary);font-size:12.5px}

@@ -158,9 +158,11 @@ StateRuns MakeStateRuns(const Timeline& timeline, const RowGrid& grid, double wi
   std::size_t columns = std::min(most, static_cast<std::size_t>(std::max(1.0, width_pixels)));
   const double height = grid.rows.empty() ? 1 : grid.rows.front().height;
   const int finest = std::clamp(static_cast<int>(height), kLeastSteps, 28);
+  const int coarsest = std::clamp(finest / 2, kLeastSteps, 8);
   for (;;) {
     StateRuns runs;
-    for (int steps = finest; steps >= kLeastSteps; steps = steps > 8 ? 8 : steps / 2) {
+    for (int steps = finest; steps >= coarsest;
+         steps = steps > coarsest ? std::max(coarsest, steps / 2) : 0) {
       runs = TryRuns(timeline, grid, columns, steps);
       if (runs.quads <= budget) return runs;
     }

@@ -21,7 +21,7 @@ namespace stipple {
 /// window.
 inline constexpr std::size_t kQuadBudget = 4000;
 /// With many rows the budget grows, else too few columns would be left to show a pattern.
-inline constexpr std::size_t kQuadsPerRow = 160;
+inline constexpr std::size_t kQuadsPerRow = 400;
 inline constexpr std::size_t kLargestQuadBudget = 16000;  // about 200 kB of SVG
 constexpr std::size_t QuadBudgetFor(std::size_t rows) {
   return std::clamp(rows * kQuadsPerRow, kQuadBudget, kLargestQuadBudget);
