@@ -79,7 +79,7 @@ std::string Header(const ReportInput& input) {
 std::string Overview(const ReportInput& input, const ViewInput& views) {
   if (!HasRows(views.timeline)) return {};
   const std::string noun(NounFor(input.timeline));
-  std::string text = "<div class=\"line\">";
+  std::string text = "<div class=\"line rows\">";
   const bool one = input.timeline.rows.size() == 1;
   text += PanelText({one ? "State over time" : "State of each " + noun, "main", true, Legend(), {}},
                     TimelineView(views));

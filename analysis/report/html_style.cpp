@@ -74,7 +74,7 @@ details .scroll{overflow-x:auto}
 #tip{position:absolute;z-index:2;pointer-events:none;background:var(--ground);color:var(--ink);border:1px solid var(--hair);border-radius:4px;padding:6px 9px;font-size:12px;line-height:1.5;box-shadow:0 2px 8px #0002;white-space:nowrap}
 #tip b{display:block}
 .cursor{stroke:var(--ink);stroke-width:1;opacity:.55;pointer-events:none}
-@media (max-width:1000px){body{padding:20px 16px}.line,.line.lower{display:block}.line>section,.line>div{margin-bottom:22px}figure{overflow-x:auto}.main svg,.detail svg{min-width:680px}.matrix svg,.side svg{max-width:420px}}
+@media screen and (max-width:1000px){body{padding:20px 16px}.line,.line.lower{display:block}.line>section,.line>div{margin-bottom:22px}.line.rows{display:flex;overflow-x:auto;gap:0 40px}.line.rows .main{flex-basis:680px}.line.rows .side{flex-basis:223px}.line.rows figure{overflow:visible}figure{overflow-x:auto}.main svg,.detail svg{min-width:680px}.matrix svg,.side svg{max-width:420px}}
 )css";
 
 constexpr std::string_view kPrint = R"css(

@@ -82,8 +82,13 @@ std::vector<StateShares> Columns(const Stretches& row, double begin, double end,
                                  std::size_t count) {
   std::vector<StateShares> columns(count, StateShares{});
   const double width = (end - begin) / static_cast<double>(count);
+  const auto column_of = [&](double time) {
+    return static_cast<std::size_t>(
+        std::clamp((time - begin) / width, 0.0, static_cast<double>(count)));
+  };
   for (const Stretch& stretch : row)
-    for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t i = column_of(stretch.begin); i < std::min(count, column_of(stretch.end) + 1);
+         ++i) {
       const double left = begin + static_cast<double>(i) * width;
       const double shared = std::min(stretch.end, left + width) - std::max(stretch.begin, left);
       if (shared > 0)
