@@ -172,7 +172,9 @@ class NffReader {
     const long line = tokens_.line();
     const Vec3 normal = tokens_.Vector("the polygon's normal");
     if (!(Dot(normal, normal) > 0)) tokens_.Fail(line, "normal of length 0");
-    return Normalized(normal);
+    // One that is of unit length but for its six digits stays as it is: a file survives reading and
+    // writing.
+    return std::abs(Length(normal) - 1) < 1e-5 ? normal : Normalized(normal);
   }
 
   void CheckArea() const {

@@ -45,7 +45,8 @@ class NffWriter {
     Line("resolution {} {}", view.resolution.width, view.resolution.height);
     Line("b {}", Text(scene_.background));
     for (const Light& light : scene_.lights)
-      Line("l {}{}", Text(light.position), light.colored ? fmt::format(" {}", Text(light.color)) : "");
+      Line("l {}{}", Text(light.position),
+           light.colored ? fmt::format(" {}", Text(light.color)) : "");
   }
 
   void WriteFill(const Material& m) {
