@@ -53,11 +53,11 @@ TEST(Intersect, ConeToItsTip) {
   EXPECT_DOUBLE_EQ(IntersectCone(cone, {{5, 0, 1}, {-1, 0, 0}}), 4.5);
   EXPECT_EQ(IntersectCone(cone, {{5, 0, 3}, {-1, 0, 0}}), kMiss);  // the other nappe is not there
   EXPECT_DOUBLE_EQ(IntersectCone(cone, {{0.5, 0, 9}, {0, 0, -1}}), 8);
-  // Parallel to the side, so that one root is at infinity: through (0, 0, 1) along the slope.
-  const Ray parallel{{-1, 0, 1}, Normalized({1, 0, -2})};
-  EXPECT_EQ(IntersectCone(cone, parallel), kMiss);
-  const Ray crossing{{-2, 0, 3}, Normalized({1, 0, -2})};
-  EXPECT_EQ(IntersectCone(cone, crossing), kMiss);
+  // Parallel to the side, so that one root is at infinity; the other is where x = -0.75, z = 0.5.
+  EXPECT_DOUBLE_EQ(IntersectCone(cone, {{-1, 0, 1}, Normalized({1, 0, -2})}),
+                   0.25 * std::sqrt(5.0));
+  EXPECT_DOUBLE_EQ(IntersectCone(cone, {{-2, 0, 3}, Normalized({1, 0, -2})}),
+                   1.25 * std::sqrt(5.0));
 }
 
 TEST(Intersect, FrustumAtADistanceKeepsItsDigits) {

@@ -19,8 +19,8 @@ struct KnownScene {
 };
 constexpr KnownScene kKnownScenes[] = {
     {"balls", 4, 7382, 0xefc95becb89147c5},   {"rings", 5, 3301, 0xd0b0f3743dbd07a4},
-    {"rings", 7, 8401, 0x3f1023bfb1d554ca},   {"teapot", 8, 4096, 0xf8874e2277c82768},
-    {"teapot", 12, 9264, 0x772a4753a1bb3375}, {"tree", 10, 4095, 0x70db11e0e3048022},
+    {"rings", 7, 8401, 0x3f1023bfb1d554ca},   {"teapot", 8, 4096, 0x887cc3bb8ecec7d7},
+    {"teapot", 12, 9264, 0xb51adab04046be8a}, {"tree", 10, 4095, 0x70db11e0e3048022},
     {"tree", 11, 8191, 0xbfea19cdb32290e6},
 };
 

@@ -118,7 +118,7 @@ constexpr BadText kBadTexts[] = {
     {"v from 0 0 1 at 0 0 0 up 0 0 2 angle 45 resolution 8 8\n", ":2: the view's 'up' is zero or"},
     {"v from 0 0 1 at 0 0 0 up 0 1 0 angle 180 resolution 8 8\n", ":2: the view's 'angle'"},
     {"v from 0 0 1 at 0 0 0 up 0 1 0 angle 45 resolution 0 8\n", ":2: 'resolution' is 0"},
-    {"\x7f\x01\xff", ":2: unknown entity '???'"},
+    {"\x7f\x01\xff", ":2: unknown entity '?\?\?'"},
 };
 
 TEST(Nff, WhatIsWrongIsSaidWithItsLine) {
