@@ -1,0 +1,89 @@
+// What a ray can hit: the primitives of a scene, stored by kind.
+//
+// An *object* is one primitive as the scene file counts them; its number is its position in the
+// file and never changes. The arrays by kind may be reordered (the BVH does, so that neighbours in
+// space are neighbours in memory).
+#ifndef STIPPLE_RAYTRACER_GEOMETRY_SHAPES_H
+#define STIPPLE_RAYTRACER_GEOMETRY_SHAPES_H
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geometry/bounds.h"
+#include "geometry/vec.h"
+
+namespace stipple::raytracer {
+
+enum class ShapeKind : std::uint32_t { kSphere, kCone, kTriangle, kPolygon };
+
+/// A negative radius turns the surface: its normal points inwards.
+struct Sphere {
+  Vec3 center;
+  double radius;
+};
+
+/// The side of a truncated cone, without its ends; a cylinder if both radii are equal. Negative
+/// radii turn the surface.
+struct Cone {
+  Vec3 base, apex;
+  double base_radius, apex_radius;
+  Vec3 axis;      // unit length, from base to apex
+  double height;  // distance from base to apex
+};
+
+/// Corners as plain numbers: the intersection picks coordinates by index.
+struct Triangle {
+  double corner[3][3];
+  std::uint32_t first_normal;  // into Shapes::normals, or kNoNormals
+};
+
+/// A plane polygon of any outline, convex or not.
+struct Polygon {
+  Vec3 normal;                 // unit length, by the right-hand rule
+  double offset;               // the plane is Dot(normal, p) == offset
+  std::uint32_t first_vertex;  // into Shapes::vertices and Shapes::outlines
+  std::uint32_t vertex_count;
+  std::uint32_t first_normal;  // into Shapes::normals, or kNoNormals
+  int dropped_axis;            // the outline is the polygon seen along this axis (0, 1, 2)
+};
+
+struct OutlinePoint {
+  double u, v;
+};
+
+struct Object {
+  ShapeKind kind;
+  std::uint32_t index;  // into the array of its kind
+  std::uint32_t material;
+};
+
+inline constexpr std::uint32_t kNoNormals = 0xffffffff;
+
+struct Shapes {
+  std::vector<Object> objects;  // in file order
+  std::vector<Sphere> spheres;
+  std::vector<Cone> cones;
+  std::vector<Triangle> triangles;
+  std::vector<Polygon> polygons;
+  std::vector<Vec3> vertices;          // of polygons
+  std::vector<OutlinePoint> outlines;  // of polygons, as vertices
+  std::vector<Vec3> normals;           // of triangles and polygons that have one per vertex
+
+  void AddSphere(Vec3 center, double radius, std::uint32_t material);
+  void AddCone(Vec3 base, double base_radius, Vec3 apex, double apex_radius,
+               std::uint32_t material);
+  /// Three vertices make a triangle. `vertex_normals` is empty or has one unit vector per vertex.
+  void AddPolygon(std::span<const Vec3> polygon, std::span<const Vec3> vertex_normals,
+                  std::uint32_t material);
+};
+
+/// Twice the area of a polygon, along its normal (Newell's method: right for concave outlines too).
+Vec3 NewellNormal(std::span<const Vec3> polygon);
+
+/// Bounds of one object, widened so that no rounding in an intersection places a hit outside.
+Bounds BoundsOf(const Shapes& shapes, const Object& object);
+
+}  // namespace stipple::raytracer
+
+#endif

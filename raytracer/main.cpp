@@ -1,0 +1,169 @@
+// A ray tracer on MPI ranks; the program that stipple's exemplar traces.
+#include <fmt/format.h>
+#include <mpi.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+
+#include "errors.h"
+#include "geometry/bvh.h"
+#include "image/png_file.h"
+#include "options.h"
+#include "render/marks.h"
+#include "render/picture.h"
+#include "render/render.h"
+#include "report.h"
+#include "scene/load.h"
+#include "scene/nff.h"
+
+namespace stipple::raytracer {
+namespace {
+
+constexpr int kDifferent = 1;  // exit status of --compare
+constexpr int kUnusable = 2;   // exit status after InputError and UsageError
+
+/// Seconds since it was made or last asked.
+class Stopwatch {
+ public:
+  double Lap() {
+    const double now = MPI_Wtime();
+    return now - std::exchange(start_, now);
+  }
+
+ private:
+  double start_ = MPI_Wtime();
+};
+
+int PrintComparison(const Options& options) {
+  const Image a = ReadPng(options.compare.first);
+  const Image b = ReadPng(options.compare.second);
+  const ImageDifference difference = Compare(a, b);
+  if (!difference.same_size)
+    fmt::print("different sizes: {}x{} and {}x{} pixels\n", a.size.width, a.size.height,
+               b.size.width, b.size.height);
+  else if (difference.Identical())
+    fmt::print("identical: {}x{} pixels, max difference 0, RMS difference 0\n", a.size.width,
+               a.size.height);
+  else
+    fmt::print("different: {} of {}x{} pixels, max difference {} of 255, RMS difference {:.4f}\n",
+               difference.pixels, a.size.width, a.size.height, difference.max, difference.rms);
+  return difference.Identical() ? 0 : kDifferent;
+}
+
+Scene Load(const World& world, const Options& options) {
+  Mark(Moment::kLoadBegins);
+  const SceneChoice choice{options.scene, options.scene_size,
+                           static_cast<std::uint64_t>(options.object_limit), options.camera};
+  Scene scene = OnAllRanks(world, [&] { return LoadScene(choice); });
+  if (options.resolution.width > 0) scene.view.resolution = options.resolution;
+  return scene;
+}
+
+Bvh Build(const World& world, Scene& scene) {
+  Mark(Moment::kBuildBegins);
+  return OnAllRanks(world, [&] { return BuildBvh(scene.shapes); });
+}
+
+Rendered RenderScene(const World& world, const Scene& scene, const Bvh& bvh,
+                     const Options& options) {
+  const ImageSize image = scene.view.resolution;
+  const PartitionChoice choice{RasterOf(image, options.samples), options.tile,
+                               static_cast<std::uint32_t>(options.bundle), options.select,
+                               static_cast<std::uint64_t>(options.seed)};
+  Sampler sampler(scene, bvh, {static_cast<int>(options.max_depth), options.min_contribution},
+                  image, options.samples);
+  return Render(world, sampler, options.partition, choice);
+}
+
+void WriteText(const std::string& text, const std::string& path) {
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  file.close();
+  if (!file) throw InputError(path, 0, fmt::format("cannot be written: {}", std::strerror(errno)));
+}
+
+void WritePictures(const Raster& raster, ImageSize image, const Options& options) {
+  Mark(Moment::kOutputBegins);
+  if (!options.output.empty()) WritePng(PictureOf(raster, image, options.samples), options.output);
+  if (options.cost_map.ends_with(".png"))
+    WritePng(CostImageOf(raster, image, options.samples), options.cost_map);
+  else if (!options.cost_map.empty())
+    WriteText(CostTableOf(raster, image, options.samples), options.cost_map);
+}
+
+void WriteReport(const RunReport& report, const Options& options) {
+  if (!options.stats.empty()) WriteText(StatsJson(report), options.stats);
+  fmt::print("{}", Summary(report));
+  for (const std::string* path : {&options.output, &options.cost_map, &options.stats})
+    if (!path->empty()) fmt::print("  wrote {}\n", *path);
+  if (options.output.empty()) fmt::print("  no picture written: --output F.png writes one\n");
+}
+
+/// Does `work` on one rank only; if it fails there, all ranks stop.
+template <class Work>
+void OnRank(const World& world, int rank, Work work) {
+  OnAllRanks(world, [&] {
+    if (world.rank == rank) work();
+    return true;
+  });
+}
+
+void RenderAndReport(const World& world, const Options& options) {
+  Stopwatch watch;
+  RankReport report;
+  Scene scene = Load(world, options);
+  report.load_s = watch.Lap();
+  if (!options.write_scene.empty()) {
+    OnRank(world, 0, [&] { WriteNff(scene, options.write_scene); });
+    if (world.rank == 0)
+      fmt::print("wrote {}: {} objects\n", options.write_scene, scene.shapes.objects.size());
+    return;
+  }
+  const Bvh bvh = Build(world, scene);
+  report.build_s = watch.Lap();
+  const Rendered rendered = RenderScene(world, scene, bvh, options);
+  report.render_s = watch.Lap();
+  report.counts = rendered.counts;
+  report.messages = rendered.messages;
+  OnRank(world, AssemblingRank(world, options.partition),
+         [&] { WritePictures(rendered.raster, scene.view.resolution, options); });
+  const RunReport run{scene.shapes.objects.size(), GatherReports(world, report)};
+  OnRank(world, 0, [&] { WriteReport(run, options); });
+}
+
+int Run(const World& world, int argc, char** argv) {
+  const Options options = OnAllRanks(world, [&] { return ParseOptions(argc, argv); });
+  int status = 0;
+  if (options.help)
+    OnRank(world, 0, [&] { fmt::print("{}", HelpText()); });
+  else if (!options.compare.first.empty())
+    OnRank(world, 0, [&] { status = PrintComparison(options); });
+  else
+    RenderAndReport(world, options);
+  MPI_Bcast(&status, 1, MPI_INT, 0, world.comm);
+  return status;
+}
+
+int RunOrReport(int argc, char** argv) {
+  World world;
+  MPI_Comm_rank(world.comm, &world.rank);
+  MPI_Comm_size(world.comm, &world.size);
+  try {
+    return Run(world, argc, argv);
+  } catch (const StoppedTogether& stop) {
+    if (*stop.what() != '\0') fmt::print(stderr, "raytracer: {}\n", stop.what());
+    return kUnusable;
+  }
+}
+
+}  // namespace
+}  // namespace stipple::raytracer
+
+int main(int argc, char** argv) {
+  MPI_Init(&argc, &argv);
+  const int status = stipple::raytracer::RunOrReport(argc, argv);
+  MPI_Finalize();
+  return status;
+}

@@ -1,0 +1,42 @@
+#include "render/marks.h"
+
+#include <stipple/user.h>
+
+#include <cstddef>
+
+namespace stipple::raytracer {
+namespace {
+
+// By Moment.
+stipple_name moment_names[] = {{"load begins", "", 0},     {"build begins", "", 0},
+                               {"render begins", "", 0},   {"supply ends", "", 0},
+                               {"assemble begins", "", 0}, {"output begins", "", 0}};
+
+struct CounterRow {
+  stipple_name name;
+  std::uint64_t (*value)(const RayCounts& counts);
+};
+CounterRow counter_rows[] = {
+    {{"box tests", "tests", 0}, [](const RayCounts& c) { return c.tests.box_tests; }},
+    {{"primitive tests", "tests", 0}, [](const RayCounts& c) { return c.tests.primitive_tests; }},
+    {{"eye rays", "rays", 0}, [](const RayCounts& c) { return c.eye_rays; }},
+    {{"shadow rays", "rays", 0}, [](const RayCounts& c) { return c.shadow_rays; }},
+    {{"reflected rays", "rays", 0}, [](const RayCounts& c) { return c.reflected_rays; }},
+    {{"refracted rays", "rays", 0}, [](const RayCounts& c) { return c.refracted_rays; }}};
+
+stipple_name bundles_left = {"bundles left", "bundles", 0};
+
+}  // namespace
+
+void Mark(Moment moment) { stipple_mark(&moment_names[static_cast<std::size_t>(moment)]); }
+
+void MarkHost() { stipple_host(); }
+
+void RecordCounts(const RayCounts& counts) {
+  for (CounterRow& row : counter_rows)
+    stipple_counter(&row.name, static_cast<double>(row.value(counts)));
+}
+
+void RecordBundlesLeft(std::uint32_t bundles) { stipple_counter(&bundles_left, bundles); }
+
+}  // namespace stipple::raytracer

@@ -1,0 +1,35 @@
+// What the ray tracer tells a tracing tool about itself; nothing happens when none is loaded.
+#ifndef STIPPLE_RAYTRACER_RENDER_MARKS_H
+#define STIPPLE_RAYTRACER_RENDER_MARKS_H
+
+#include <cstdint>
+
+#include "render/tracer.h"
+
+namespace stipple::raytracer {
+
+enum class Moment {
+  kLoadBegins,
+  kBuildBegins,
+  kRenderBegins,
+  kSupplyEnds,
+  kAssembleBegins,
+  kOutputBegins
+};
+
+/// Marks a moment of the run.
+void Mark(Moment moment);
+
+/// This rank hands out work.
+void MarkHost();
+
+/// Records this rank's counters as they stand: after each bundle, or each part of a static
+/// partition.
+void RecordCounts(const RayCounts& counts);
+
+/// Records, on the host, how many bundles are still to be handed out.
+void RecordBundlesLeft(std::uint32_t bundles);
+
+}  // namespace stipple::raytracer
+
+#endif

@@ -1,0 +1,26 @@
+// From what the rays found to pictures: the picture itself, and a map of what each pixel cost.
+#ifndef STIPPLE_RAYTRACER_RENDER_PICTURE_H
+#define STIPPLE_RAYTRACER_RENDER_PICTURE_H
+
+#include <string>
+
+#include "image/png_file.h"
+#include "render/render.h"
+
+namespace stipple::raytracer {
+
+/// The mean of the rays of each pixel, in integers throughout.
+Image PictureOf(const Raster& raster, ImageSize image, Samples samples);
+
+/// Grey by work, white for the dearest pixel. With corner rays a corner's work goes to the pixel
+/// below and to the right of it, or the last one in the row or column.
+Image CostImageOf(const Raster& raster, ImageSize image, Samples samples);
+
+/// CSV with the columns x,y,work,object,in_shadow,depth, one row per pixel. Object is the object's
+/// number in the scene, -1 for background; object and in_shadow are those of the pixel's first ray.
+/// Work and depth over the rays of the pixel.
+std::string CostTableOf(const Raster& raster, ImageSize image, Samples samples);
+
+}  // namespace stipple::raytracer
+
+#endif

@@ -1,0 +1,58 @@
+// Rendering over all ranks: who traces what, and how the results come together.
+#ifndef STIPPLE_RAYTRACER_RENDER_RENDER_H
+#define STIPPLE_RAYTRACER_RENDER_RENDER_H
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "partition/ray_partition.h"
+#include "render/sampling.h"
+#include "render/world.h"
+
+namespace stipple::raytracer {
+
+/// What every rank found at the points of the raster; on the assembling rank only, empty elsewhere.
+using Raster = std::vector<RayResult>;
+
+struct Rendered {
+  Raster raster;
+  RayCounts counts;            // of this rank
+  std::uint64_t messages = 0;  // this rank sent
+};
+
+/// The rank that receives all results: the host if there is one, else rank 0.
+int AssemblingRank(const World& world, std::string_view partition);
+
+/// Traces this rank's share of the picture and assembles all shares; every rank calls it.
+Rendered Render(const World& world, Sampler& sampler, std::string_view partition,
+                const PartitionChoice& choice);
+
+// The two ways to do it; Render chooses.
+
+/// Every rank knows its points beforehand; rank 0 collects.
+Rendered RenderShares(const World& world, Sampler& sampler, RayPartition partition,
+                      const PartitionChoice& choice);
+/// The last rank hands out bundles on demand and collects; the others trace.
+Rendered RenderBundles(const World& world, Sampler& sampler, const PartitionChoice& choice);
+
+/// Puts results where their points are.
+void Place(const std::vector<RasterPoint>& points, const std::vector<RayResult>& results,
+           Raster& raster);
+
+/// RayResult in messages.
+class ResultType {
+ public:
+  ResultType();
+  ~ResultType();
+  ResultType(const ResultType&) = delete;
+  ResultType& operator=(const ResultType&) = delete;
+  MPI_Datatype get() const { return type_; }
+
+ private:
+  MPI_Datatype type_;
+};
+
+}  // namespace stipple::raytracer
+
+#endif

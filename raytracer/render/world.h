@@ -1,0 +1,53 @@
+// The ranks of this run, and how they stop together.
+#ifndef STIPPLE_RAYTRACER_RENDER_WORLD_H
+#define STIPPLE_RAYTRACER_RENDER_WORLD_H
+
+#include <mpi.h>
+
+#include <cstdint>
+#include <new>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "errors.h"
+
+namespace stipple::raytracer {
+
+struct World {
+  MPI_Comm comm = MPI_COMM_WORLD;
+  int rank = 0;
+  int size = 1;
+};
+
+/// Thrown on every rank when one of them cannot go on. The message is empty except on the rank that
+/// reports it.
+struct StoppedTogether : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// All ranks tell what went wrong ("" for nothing); if anything did, all throw, and the lowest
+/// failing rank keeps its message.
+void StopTogether(const World& world, const std::string& problem);
+
+/// Does `work` on every rank; if it fails on any, all ranks stop with one message.
+template <class Work>
+auto OnAllRanks(const World& world, Work work) {
+  std::optional<decltype(work())> result;
+  std::string problem;
+  try {
+    result = work();
+  } catch (const InputError& error) {
+    problem = error.what();
+  } catch (const UsageError& error) {
+    problem = error.what();
+  } catch (const std::bad_alloc&) {
+    problem = "not enough memory for this scene";
+  }
+  StopTogether(world, problem);
+  return std::move(*result);
+}
+
+}  // namespace stipple::raytracer
+
+#endif

@@ -1,0 +1,93 @@
+#include "report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <type_traits>
+
+namespace stipple::raytracer {
+namespace {
+
+static_assert(std::is_trivially_copyable_v<RankReport>);
+
+struct CountRow {
+  std::string_view key;
+  std::uint64_t (*value)(const RankReport& report);
+};
+constexpr CountRow kCounts[] = {
+    {"eye_rays", [](const RankReport& r) { return r.counts.eye_rays; }},
+    {"eye_hits", [](const RankReport& r) { return r.counts.eye_hits; }},
+    {"shadow_rays", [](const RankReport& r) { return r.counts.shadow_rays; }},
+    {"shadow_hits", [](const RankReport& r) { return r.counts.shadow_hits; }},
+    {"reflected_rays", [](const RankReport& r) { return r.counts.reflected_rays; }},
+    {"refracted_rays", [](const RankReport& r) { return r.counts.refracted_rays; }},
+    {"box_tests", [](const RankReport& r) { return r.counts.tests.box_tests; }},
+    {"primitive_tests", [](const RankReport& r) { return r.counts.tests.primitive_tests; }},
+    {"messages", [](const RankReport& r) { return r.messages; }},
+};
+
+struct TimeRow {
+  std::string_view key;
+  double RankReport::*seconds;
+};
+constexpr TimeRow kTimes[] = {{"load_s", &RankReport::load_s},
+                              {"build_s", &RankReport::build_s},
+                              {"render_s", &RankReport::render_s}};
+
+std::uint64_t Sum(const RunReport& report, std::uint64_t (*value)(const RankReport&)) {
+  std::uint64_t sum = 0;
+  for (const RankReport& rank : report.ranks) sum += value(rank);
+  return sum;
+}
+
+double Slowest(const RunReport& report, double RankReport::*seconds) {
+  double slowest = 0;
+  for (const RankReport& rank : report.ranks) slowest = std::max(slowest, rank.*seconds);
+  return slowest;
+}
+
+std::uint64_t WorkOf(const RankReport& report) { return report.counts.Work(); }
+
+}  // namespace
+
+std::vector<RankReport> GatherReports(const World& world, const RankReport& report) {
+  std::vector<RankReport> all(world.rank == 0 ? static_cast<std::size_t>(world.size) : 0);
+  MPI_Gather(&report, sizeof report, MPI_BYTE, all.data(), sizeof report, MPI_BYTE, 0, world.comm);
+  return all;
+}
+
+std::string StatsJson(const RunReport& report) {
+  nlohmann::ordered_json json;
+  json["objects"] = report.objects;
+  json["ranks"] = report.ranks.size();
+  for (const CountRow& row : kCounts) json[std::string(row.key)] = Sum(report, row.value);
+  for (const TimeRow& row : kTimes) json[std::string(row.key)] = Slowest(report, row.seconds);
+  for (const RankReport& rank : report.ranks) json["work"].push_back(WorkOf(rank));
+  return json.dump(2) + "\n";
+}
+
+std::string Summary(const RunReport& report) {
+  const double seconds = Slowest(report, &RankReport::render_s);
+  const std::uint64_t rays = Sum(report, [](const RankReport& r) { return r.counts.Rays(); });
+  const auto tracing = static_cast<double>(std::ranges::count_if(
+      report.ranks, [](const RankReport& r) { return r.counts.eye_rays > 0; }));
+  std::uint64_t most = 0;
+  for (const RankReport& rank : report.ranks) most = std::max(most, WorkOf(rank));
+  const auto work = static_cast<double>(Sum(report, WorkOf));
+  std::string text = fmt::format(
+      "{} rays through {} objects in {:.3f} s on {} {}: {:.2f} million rays per second.\n", rays,
+      report.objects, seconds, report.ranks.size(), report.ranks.size() == 1 ? "rank" : "ranks",
+      seconds > 0 ? static_cast<double>(rays) / seconds * 1e-6 : 0.0);
+  for (const CountRow& row : kCounts)
+    text += fmt::format("  {:<16} {:>13}\n", row.key, Sum(report, row.value));
+  for (const TimeRow& row : kTimes)
+    text += fmt::format("  {:<16} {:>13.3f}\n", row.key, Slowest(report, row.seconds));
+  if (tracing > 1 && work > 0)
+    text += fmt::format("  work of the busiest tracing rank over the mean: {:.2f}\n",
+                        static_cast<double>(most) * tracing / work);
+  return text;
+}
+
+}  // namespace stipple::raytracer

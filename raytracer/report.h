@@ -1,0 +1,39 @@
+// The short answer at the end of a run, and the numbers for scripts.
+#ifndef STIPPLE_RAYTRACER_REPORT_H
+#define STIPPLE_RAYTRACER_REPORT_H
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "render/tracer.h"
+#include "render/world.h"
+
+namespace stipple::raytracer {
+
+/// What one rank has to say about a run. It travels in messages as it is.
+struct RankReport {
+  RayCounts counts;
+  std::uint64_t messages = 0;
+  double load_s = 0, build_s = 0, render_s = 0;
+};
+
+struct RunReport {
+  std::uint64_t objects = 0;
+  std::vector<RankReport> ranks;
+};
+
+/// On rank 0 the reports of all ranks in order, elsewhere nothing; every rank calls it.
+std::vector<RankReport> GatherReports(const World& world, const RankReport& report);
+
+/// JSON with the keys objects eye_rays eye_hits shadow_rays shadow_hits reflected_rays
+/// refracted_rays box_tests primitive_tests load_s build_s render_s messages ranks (integers,
+/// seconds; times are the slowest rank's), and `work`: box and primitive tests of each rank.
+std::string StatsJson(const RunReport& report);
+
+/// A headline and a few lines.
+std::string Summary(const RunReport& report);
+
+}  // namespace stipple::raytracer
+
+#endif

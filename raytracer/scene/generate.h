@@ -1,0 +1,64 @@
+// The four scenes of Eric Haines' Standard Procedural Databases that the exemplar uses, at any
+// size: the same objects in the same order as SPD's own generators write them.
+#ifndef STIPPLE_RAYTRACER_SCENE_GENERATE_H
+#define STIPPLE_RAYTRACER_SCENE_GENERATE_H
+
+#include <cstdint>
+#include <string_view>
+
+#include "scene/scene.h"
+
+namespace stipple::raytracer {
+
+Scene Balls(int size);
+Scene Rings(int size);
+Scene Teapot(int size);
+Scene Tree(int size);
+
+/// Objects in each scene, as a real number so that absurd sizes do not overflow.
+double BallsObjects(double size);
+double RingsObjects(double size);
+double TeapotObjects(double size);
+double TreeObjects(double size);
+
+/// A further view of a generated scene, beside its own.
+struct NamedView {
+  std::string_view name;
+  View (*view)(int size);
+};
+
+/// Eye at (0.2, 10.2, 2.2), looking at (0.2, 0, 1.5): the pot from its side, spout to the left.
+View TeapotSideView(int size);
+/// Straight down on the middle of the pyramid of rings: for size n the eye is at (0, y, h), looking
+/// at (0, y, 0) with y = 1.30656 (n + 1) and h = 4.3 n + 3; up is +y, away from the scene's own
+/// eye.
+View RingsAboveView(int size);
+
+struct Generator {
+  std::string_view name;
+  Scene (*scene)(int size);
+  double (*objects)(double size);
+  int smallest;
+  int usual;  // the size whose statistics SPD publishes
+  NamedView other_view;
+};
+
+inline constexpr Generator kGenerators[] = {
+    {"balls", Balls, BallsObjects, 0, 4, {}},
+    {"rings", Rings, RingsObjects, 1, 7, {"above", RingsAboveView}},
+    {"teapot", Teapot, TeapotObjects, 1, 12, {"side", TeapotSideView}},
+    {"tree", Tree, TreeObjects, 0, 11, {}},
+};
+
+/// More objects than this are refused: a mistyped size should not fill the machine's memory.
+inline constexpr double kMostObjects = 5e7;
+
+/// SPD's background, the same in all scenes.
+inline constexpr Vec3 kSpdBackground{0.078, 0.361, 0.753};
+
+/// The exponent that SPD writes for surfaces without a highlight.
+inline constexpr double kMatteShine = 100000;
+
+}  // namespace stipple::raytracer
+
+#endif

@@ -1,0 +1,24 @@
+// From names and sizes to a scene.
+#ifndef STIPPLE_RAYTRACER_SCENE_LOAD_H
+#define STIPPLE_RAYTRACER_SCENE_LOAD_H
+
+#include <cstdint>
+#include <string>
+
+#include "scene/scene.h"
+
+namespace stipple::raytracer {
+
+struct SceneChoice {
+  std::string scene;               // of kGenerators, or a file
+  std::int64_t size = -1;          // of a generated scene; below 0: its usual size
+  std::uint64_t object_limit = 0;  // 0: all
+  std::string camera = "default";  // "default", a further view of the scene, or a file
+};
+
+/// Errors: InputError for files, UsageError for a size or view that the scene does not have.
+Scene LoadScene(const SceneChoice& choice);
+
+}  // namespace stipple::raytracer
+
+#endif

@@ -1,0 +1,103 @@
+#include "scene/nff_tokens.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <string>
+#include <system_error>
+
+#include "errors.h"
+
+namespace stipple::raytracer {
+namespace {
+
+constexpr double kLargest = 1e30;
+constexpr std::size_t kShownCharacters = 40;
+
+bool IsBlank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+
+/// A token as a message may show it: not endless, and without bytes that disturb a terminal.
+std::string Shown(std::string_view token) {
+  std::string shown;
+  for (const char c : token.substr(0, kShownCharacters)) shown += c >= ' ' && c <= '~' ? c : '?';
+  return token.size() > kShownCharacters ? shown + "..." : shown;
+}
+
+}  // namespace
+
+void NffTokens::Fail(long line, std::string_view problem) const {
+  throw InputError(name_, line, problem);
+}
+
+void NffTokens::Skip() {
+  std::size_t next = position_;
+  long line = line_;
+  while (next < text_.size() && (IsBlank(text_[next]) || text_[next] == '#')) {
+    if (text_[next] == '#') {
+      while (next < text_.size() && text_[next] != '\n') ++next;
+      continue;
+    }
+    if (text_[next] == '\n') ++line;
+    ++next;
+  }
+  position_ = next;
+  if (next < text_.size())
+    line_ = line;  // at the end the last token's line says more than an empty line
+}
+
+std::string_view NffTokens::Peek() const {
+  std::size_t end = position_;
+  while (end < text_.size() && !IsBlank(text_[end]) && text_[end] != '#') ++end;
+  return text_.substr(position_, end - position_);
+}
+
+std::string_view NffTokens::Take() {
+  const std::string_view token = Peek();
+  position_ += token.size();
+  Skip();
+  return token;
+}
+
+bool NffTokens::NumberFollows() const {
+  if (AtEnd()) return false;
+  const char c = text_[position_];
+  return (c >= '0' && c <= '9') || c == '-' || c == '+' || c == '.';
+}
+
+double NffTokens::Number(std::string_view what) {
+  if (AtEnd()) Fail(fmt::format("the file ends where {} should be", what));
+  const std::string_view token = Peek();
+  const std::string_view digits = token.substr(token.starts_with('+') ? 1 : 0);
+  double value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error == std::errc::invalid_argument || end != digits.data() + digits.size())
+    Fail(fmt::format("{} should be a number, found '{}'", what, Shown(token)));
+  // Out of range is either: too small, which strtod rounds to zero or nearly, or too large, which
+  // it makes infinite.
+  if (error == std::errc::result_out_of_range)
+    value = std::strtod(std::string(digits).c_str(), nullptr);
+  if (!std::isfinite(value)) Fail(fmt::format("{} is not a finite number: {}", what, Shown(token)));
+  if (std::abs(value) > kLargest) Fail(fmt::format("{} is too large: {}", what, Shown(token)));
+  Take();
+  return value;
+}
+
+Vec3 NffTokens::Vector(std::string_view what) {
+  const double x = Number(what);
+  const double y = Number(what);
+  const double z = Number(what);
+  return {x, y, z};
+}
+
+long NffTokens::Count(std::string_view what, long low, long high) {
+  const long line = line_;
+  const double value = Number(what);
+  if (value != std::floor(value)) Fail(line, fmt::format("{} should be a whole number", what));
+  if (value < static_cast<double>(low) || value > static_cast<double>(high))
+    Fail(line, fmt::format("{} is {}, it should be from {} to {}", what, value, low, high));
+  return static_cast<long>(value);
+}
+
+}  // namespace stipple::raytracer

@@ -1,0 +1,49 @@
+// Words and numbers of an NFF text, each with the line it stands on.
+#ifndef STIPPLE_RAYTRACER_SCENE_NFF_TOKENS_H
+#define STIPPLE_RAYTRACER_SCENE_NFF_TOKENS_H
+
+#include <cstddef>
+#include <string_view>
+
+#include "geometry/vec.h"
+
+namespace stipple::raytracer {
+
+class NffTokens {
+ public:
+  NffTokens(std::string_view text, std::string_view name) : text_(text), name_(name) { Skip(); }
+
+  bool AtEnd() const { return position_ == text_.size(); }
+  /// Line of the next token; at the end, the last line.
+  long line() const { return line_; }
+  /// The next token, which stays; empty at the end.
+  std::string_view Peek() const;
+  std::string_view Take();
+  /// Could the next token begin a number?
+  bool NumberFollows() const;
+
+  /// `what` says in messages which number is missing or wrong. Errors: InputError; also for NaN,
+  /// infinity, and magnitudes above 1e30, whose squares and cubes would not stay finite.
+  double Number(std::string_view what);
+  Vec3 Vector(std::string_view what);
+  /// A whole number from low to high.
+  long Count(std::string_view what, long low, long high);
+
+  /// Numbers that the rest of the text could hold at most.
+  std::size_t NumbersLeftAtMost() const { return (text_.size() - position_ + 1) / 2; }
+
+  [[noreturn]] void Fail(std::string_view problem) const { Fail(line_, problem); }
+  [[noreturn]] void Fail(long line, std::string_view problem) const;
+
+ private:
+  void Skip();  // blanks and comments
+
+  std::string_view text_;
+  std::string_view name_;
+  std::size_t position_ = 0;
+  long line_ = 1;
+};
+
+}  // namespace stipple::raytracer
+
+#endif

@@ -1,0 +1,46 @@
+// A scene: what is seen, from where, in which light.
+#ifndef STIPPLE_RAYTRACER_SCENE_SCENE_H
+#define STIPPLE_RAYTRACER_SCENE_SCENE_H
+
+#include <cstdint>
+#include <vector>
+
+#include "geometry/shapes.h"
+#include "geometry/vec.h"
+#include "scene/view.h"
+
+namespace stipple::raytracer {
+
+/// NFF's fill: colour, and how much of a ray is scattered, mirrored and let through.
+struct Material {
+  Vec3 color{1, 1, 1};
+  double diffuse = 1;       // Kd
+  double specular = 0;      // Ks
+  double shine = 0;         // exponent of the highlight
+  double transmission = 0;  // T
+  double refraction = 1;    // index of refraction inside
+
+  friend bool operator==(const Material&, const Material&) = default;
+};
+
+struct Light {
+  Vec3 position;
+  Vec3 color{1, 1, 1};
+  bool colored = false;  // the file gave a colour
+};
+
+struct Scene {
+  Vec3 background;
+  View view;
+  std::vector<Light> lights;
+  std::vector<Material> materials;
+  Shapes shapes;
+};
+
+/// Keeps `limit` objects: the largest spheres first (objects that are no spheres count as largest),
+/// else the first in the file. Their order stays.
+void LimitObjects(Scene& scene, std::uint64_t limit);
+
+}  // namespace stipple::raytracer
+
+#endif

@@ -1,0 +1,37 @@
+// The arithmetic that the ray tracer is compiled with.
+#include <gtest/gtest.h>
+
+namespace stipple::raytracer {
+namespace {
+
+struct PairD {
+  double x, y;
+};
+struct PairF {
+  float x, y;
+};
+
+[[gnu::noinline]] PairD RoundedToFloat(PairD a) {
+  PairF rounded{static_cast<float>(a.x), static_cast<float>(a.y)};
+  return {rounded.x, rounded.y};
+}
+
+// GCC 12's SLP vectoriser drops both conversions here and returns its argument; it has to be off.
+TEST(Rounding, ConversionsToFloatAreNotDropped) {
+  const PairD rounded = RoundedToFloat({0.1, 0.2});
+  EXPECT_EQ(rounded.x, 0.100000001490116119384765625);
+  EXPECT_EQ(rounded.y, 0.20000000298023223876953125);
+}
+
+[[gnu::noinline]] double ProductMinusProduct(double a, double b, double c, double d) {
+  return a * b - c * d;
+}
+
+// With fused multiply-add the product that is not rounded leaves a remainder, and pictures differ
+// between machines.
+TEST(Rounding, ProductsAreRoundedBeforeTheyAreSubtracted) {
+  EXPECT_EQ(ProductMinusProduct(0.1, 0.1, 0.1, 0.1), 0.0);
+}
+
+}  // namespace
+}  // namespace stipple::raytracer
