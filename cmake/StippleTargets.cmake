@@ -29,8 +29,10 @@ function(stipple_instrument target)
   endif()
   target_compile_options(${target} PRIVATE ${flags})
   add_dependencies(${target} ${plugin})
+  # OBJECT_DEPENDS takes no generator expression, so the file is named by where the plugin's target puts it.
   get_target_property(sources ${target} SOURCES)
-  set_property(SOURCE ${sources} DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} APPEND PROPERTY OBJECT_DEPENDS $<TARGET_FILE:${plugin}>)
+  get_target_property(plugin_dir ${plugin} LIBRARY_OUTPUT_DIRECTORY)
+  set_property(SOURCE ${sources} DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} APPEND PROPERTY OBJECT_DEPENDS ${plugin_dir}/stipple.so)
 endfunction()
 
 # stipple_test(NAME quick|full SOURCES ... LIBRARIES ...): a GoogleTest program, run as one CTest test.
