@@ -11,6 +11,7 @@
 #include <pthread.h>
 #include <sys/mman.h>
 
+#include "chunk.h"
 #include "clock.h"
 #include "process_end.h"
 #include "recorder.h"
@@ -30,8 +31,6 @@ static __thread bool stipple_inside = false;
 namespace stipple {
 namespace {
 
-constexpr std::uint64_t kFirstChunkBytes = kGranuleBytes;
-constexpr std::uint64_t kLargestChunkBytes = 1024 * 1024;
 constexpr std::size_t kCountsBytes = (std::size_t{kMaxRegion} + 1) * sizeof(std::uint64_t);
 constexpr unsigned kInlineKeys = 32;  // glibc keeps these in the thread itself; others it allocates
 
@@ -96,7 +95,7 @@ Thread* NewThread() {
     if (thread == nullptr) return nullptr;
     thread->tid = GetTid();
     thread->index = thread->tid == process->first_tid ? 0 : ++process->last_thread;
-    thread->next_bytes = kFirstChunkBytes;
+    thread->next_bytes = kGranuleBytes;
     thread->control.clock_mask = ReadSettings().clock_mask;
     thread->next = process->threads;
     process->threads = thread;
@@ -105,45 +104,6 @@ Thread* NewThread() {
   stipple_stream = &thread->control;
   if (have_end_key) pthread_setspecific(end_key, thread);
   return thread;
-}
-
-/// The thread's next chunk, with room for `bytes`; false if recording has stopped.
-bool NextChunk(Process& process, Thread& thread, std::size_t bytes, std::uint64_t ticks) {
-  std::uint64_t chunk_bytes = thread.next_bytes;
-  const std::uint64_t least = sizeof(ChunkHeader) + bytes;
-  if (chunk_bytes < least)
-    chunk_bytes = (least + kGranuleBytes - 1) / kGranuleBytes * kGranuleBytes;
-  char* place = nullptr;
-  {
-    Holding holding(process.lock);
-    if (process.state.load(std::memory_order_relaxed) != State::kRecording) return false;
-    int error = 0;
-    place = TakeBytes(process.file, chunk_bytes, &error);
-    if (place == nullptr) {
-      StopProcess(process, error);
-      return false;
-    }
-  }
-  ChunkHeader header{};
-  header.bytes = static_cast<std::uint32_t>(chunk_bytes);
-  header.kind = ChunkKind::kEvents;
-  header.thread = thread.index;
-  header.tid = thread.tid;
-  header.sequence = thread.sequence++;
-  header.ticks = ticks;
-  header.lost = thread.lost;
-  WriteChunkHeader(process, place, header);
-  // The old chunk's pages leave this process's memory, not the file; a slot reserved there before
-  // can still be written.
-  if (thread.chunk != nullptr)
-    Syscall(SYS_madvise, Argument(thread.chunk), static_cast<long>(thread.chunk_bytes),
-            MADV_DONTNEED);
-  thread.chunk = place;
-  thread.chunk_bytes = chunk_bytes;
-  thread.control.cur = reinterpret_cast<std::uint64_t>(place) + sizeof(ChunkHeader);
-  thread.chunk_end = thread.control.end = reinterpret_cast<std::uint64_t>(place) + chunk_bytes;
-  if (thread.next_bytes < kLargestChunkBytes) thread.next_bytes *= 2;
-  return true;
 }
 
 /// Takes `bytes` of the stream in one instruction; they are valid if they end at or before `end`.
@@ -159,6 +119,12 @@ void Commit(EventWord* place, EventWord word) {
   std::atomic_ref<EventWord>(*place).store(word, std::memory_order_release);
 }
 
+/// A record that did not fit leaves the chunk's last words zero for good.
+void NoteWaste(Thread& thread, std::uint64_t slot) {
+  const auto begin = reinterpret_cast<std::uint64_t>(thread.chunk);
+  if (slot > begin && slot < thread.chunk_end) thread.waste = slot;
+}
+
 /// Reserves on the slow path: begins the process's or thread's stream, takes a chunk. Null: lost.
 /// Signals are blocked.
 EventWord* ReserveSlowly(std::uint64_t bytes, std::uint64_t ticks) {
@@ -170,6 +136,7 @@ EventWord* ReserveSlowly(std::uint64_t bytes, std::uint64_t ticks) {
   for (int attempt = 0; attempt < 2; ++attempt) {
     const std::uint64_t slot = Reserve(thread->control, bytes);
     if (slot + bytes <= thread->chunk_end) return WordAt(slot);
+    NoteWaste(*thread, slot);
     if (!NextChunk(*process, *thread, bytes, ticks)) break;
   }
   return nullptr;
@@ -181,8 +148,10 @@ EventWord* ReserveRecord(std::uint64_t bytes) {
   const std::uint64_t slot = Reserve(control, bytes);
   if (slot + bytes <= control.end) [[likely]]
     return WordAt(slot);
+  if (ReadSettings().archive == nullptr) return nullptr;
   const std::uint64_t ticks = ReadTicks();
   const Inside inside;
+  if (Thread* thread = KnownThread()) NoteWaste(*thread, slot);
   EventWord* place = inside.again() ? nullptr : ReserveSlowly(bytes, ticks);
   if (place == nullptr) CountLost(1);
   return place;
@@ -208,7 +177,8 @@ std::uint64_t AppendEvent(std::uint32_t region, bool leave) {
 /// the thread. Events after it still find the stream.
 void EndThread(void* pointer) {
   auto* thread = static_cast<Thread*>(pointer);
-  if (stipple_stream != &thread->control) return;
+  // Zeroed: a forked child's, which has not recorded.
+  if (stipple_stream != &thread->control || thread->tid == 0) return;
   if (++thread->end_rounds < PTHREAD_DESTRUCTOR_ITERATIONS) {
     pthread_setspecific(end_key, thread);
     return;
@@ -224,6 +194,13 @@ void EndThread(void* pointer) {
   if (thread->chunk != nullptr)
     Syscall(SYS_madvise, Argument(thread->chunk), static_cast<long>(thread->chunk_bytes),
             MADV_DONTNEED);
+}
+
+/// The time, or that of the chunk's begin if a signal handler took the chunk since.
+std::uint64_t NotBeforeChunk(std::uint64_t ticks) {
+  const auto* thread = reinterpret_cast<const Thread*>(stipple_stream);
+  const std::uint64_t begin = reinterpret_cast<const ChunkHeader*>(thread->chunk)->ticks;
+  return ticks < begin ? begin : ticks;
 }
 
 /// One visit of a region that is counted only, by a thread that has no counts yet.
@@ -309,7 +286,7 @@ std::uint32_t stipple_slow_event(std::uint32_t token) {
     EventWord* place = ReserveSlowly(sizeof(EventWord), arrived);
     if (place != nullptr) {
       // What the runtime took here is outside of the visit.
-      const std::uint64_t ticks = leave ? arrived : ReadTicks();
+      const std::uint64_t ticks = leave ? NotBeforeChunk(arrived) : ReadTicks();
       const bool timed = (token & STIPPLE_NO_CLOCK) == 0;
       Commit(place, MakeEvent(timed ? ticks : 0, leave, RegionId{region}));
       return token;
