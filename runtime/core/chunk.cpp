@@ -1,24 +1,25 @@
 // SPDX-License-Identifier: MIT
 // Where a thread's events go.
 //
-// Events are stored into mapped pages of the stream file, so a kill loses none. The price is a fresh
-// page for every 512 events: a fault, an allocation, file system work, several nanoseconds per
-// event, more than all else but the clock. So only a thread's first chunks are new pages, 16 KiB
-// doubling to 128 KiB. From then on the thread keeps its window: a full one is copied by one write
-// to a new place in the file, cleared and used again while it is still in the cache (measured: a
-// quarter of the cost of fresh pages).
+// Events are stored into mapped pages of the stream file, so a kill loses none. The price is a
+// fresh page for every 512 events: a fault, an allocation, file system work, several nanoseconds
+// per event, more than all else but the clock. So only a thread's first chunks are new pages, 16
+// KiB doubling to 128 KiB. From then on the thread keeps its window: a full one is copied by one
+// write to a new place in the file, cleared and used again while it is still in the cache
+// (measured: a quarter of the cost of fresh pages).
 //
 // A kill at any moment leaves every chunk at least once:
 //   1. the copy is written, whole with its header. Killed before the end: the window still counts,
-//      and it stands earlier in the file; the first of two chunks of one thread and sequence counts;
+//      and it stands earlier in the file; the first of two chunks of one thread and sequence
+//      counts;
 //   2. the window's magic is set to zero: from here the copy counts;
 //   3. the first word of each granule, then all the window is cleared; it is no chunk meanwhile;
 //   4. the new header is written, magic last.
 //
 // A slot of the window may be reserved but not yet written, when a signal handler that interrupted
 // an event fills the window. Its late store must not hit the reused window. Such a slot is still
-// zero, or its record open: if there is one, the window stays in the file as it is, a chunk like any
-// other, and the thread takes a new one.
+// zero, or its record open: if there is one, the window stays in the file as it is, a chunk like
+// any other, and the thread takes a new one.
 #include "chunk.h"
 
 #include <emmintrin.h>
@@ -64,15 +65,24 @@ EventWord* FirstWord(char* chunk) {
   return reinterpret_cast<EventWord*>(chunk + sizeof(ChunkHeader));
 }
 
-/// Takes `bytes` of the file; null if recording has stopped, now or before.
-char* TakeChunk(Process& process, std::size_t bytes, std::uint64_t* offset) {
+/// Takes `bytes` of the file, mapped; null if recording has stopped, now or before.
+char* TakeChunk(Process& process, std::size_t bytes) {
   Holding holding(process.lock);
   if (process.state.load(std::memory_order_relaxed) != State::kRecording) return nullptr;
   int error = 0;
-  *offset = process.file.used;
   char* place = TakeBytes(process.file, bytes, &error);
   if (place == nullptr) StopProcess(process, error);
   return place;
+}
+
+/// Takes a place for a copied window; false if recording has stopped, now or before.
+bool TakeCopyPlace(Process& process, std::uint64_t* offset) {
+  Holding holding(process.lock);
+  if (process.state.load(std::memory_order_relaxed) != State::kRecording) return false;
+  int error = 0;
+  const bool taken = TakePlace(process.file, kWindowBytes, offset, &error);
+  if (!taken) StopProcess(process, error);
+  return taken;
 }
 
 /// Whether the thread's chunk can be copied away and used again.
@@ -80,14 +90,15 @@ bool CanReuse(const Thread& thread, std::size_t bytes) {
   if (thread.chunk_bytes != kWindowBytes || bytes > kWindowBytes - sizeof(ChunkHeader))
     return false;
   const auto* end = reinterpret_cast<const EventWord*>(
-      thread.waste != 0 ? thread.waste : reinterpret_cast<std::uint64_t>(thread.chunk) + kWindowBytes);
+      thread.waste != 0 ? thread.waste
+                        : reinterpret_cast<std::uint64_t>(thread.chunk) + kWindowBytes);
   return IsComplete(FirstWord(thread.chunk), end);
 }
 
 /// Copies the thread's window to its place in the file and clears it; false if that failed.
 bool MoveWindowOn(Process& process, Thread& thread) {
   std::uint64_t offset = 0;
-  if (TakeChunk(process, kWindowBytes, &offset) == nullptr) return false;
+  if (!TakeCopyPlace(process, &offset)) return false;
   const int error = WriteBytes(process.file, offset, thread.chunk, kWindowBytes);
   if (error != 0) {
     Holding holding(process.lock);
@@ -111,8 +122,7 @@ bool TakeFreshChunk(Process& process, Thread& thread, std::size_t bytes) {
   const std::uint64_t least = sizeof(ChunkHeader) + bytes;
   if (chunk_bytes < least)
     chunk_bytes = (least + kGranuleBytes - 1) / kGranuleBytes * kGranuleBytes;
-  std::uint64_t offset = 0;
-  char* place = TakeChunk(process, chunk_bytes, &offset);
+  char* place = TakeChunk(process, chunk_bytes);
   if (place == nullptr) return false;
   if (thread.chunk != nullptr)
     Syscall(SYS_madvise, Argument(thread.chunk), static_cast<long>(thread.chunk_bytes),

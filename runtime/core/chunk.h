@@ -10,8 +10,8 @@
 
 namespace stipple {
 
-/// Gives the thread a chunk with room for `bytes`, begun at `ticks`; false if recording has stopped.
-/// Signals are blocked, the lock is not held.
+/// Gives the thread a chunk with room for `bytes`, begun at `ticks`; false if recording has
+/// stopped. Signals are blocked, the lock is not held.
 bool NextChunk(Process& process, Thread& thread, std::size_t bytes, std::uint64_t ticks);
 
 }  // namespace stipple

@@ -10,7 +10,6 @@
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
-#include <sys/uio.h>
 
 #include "stipple/format.h"
 
@@ -19,9 +18,11 @@ namespace {
 
 constexpr std::uint64_t kFirstExtentBytes = 256 * 1024;
 constexpr std::uint64_t kLargestExtentBytes = 16 * 1024 * 1024;
-// So much of a stream stays in the page cache for the analysis; a longer one shall not push the
-// program's own files out of memory.
-constexpr std::uint64_t kCachedBytes = 64ull << 40;
+// A long stream must not push the program's own files out of memory, and pages that are used again
+// cost a tenth of fresh ones in a virtual machine: what is older than this is written out and
+// dropped from the page cache, batch by batch.
+constexpr std::uint64_t kBatchBytes = 8 * 1024 * 1024;
+constexpr std::uint64_t kCachedBatches = 6;
 constexpr int kHighDescriptor = 700;  // out of the way of programs that count on low numbers
 
 bool IsOurs(const StreamFile& file, int descriptor) {
@@ -86,7 +87,7 @@ int Allocate(int descriptor, std::uint64_t from, std::uint64_t to) {
   return error;
 }
 
-/// Grows the file so that `bytes` more can be taken, and maps from `used` on.
+/// Grows the file so that `bytes` more can be taken; 0 or an errno.
 int Grow(StreamFile& file, std::uint64_t bytes) {
   const int descriptor = Descriptor(file);
   if (descriptor < 0) return -descriptor;
@@ -97,13 +98,33 @@ int Grow(StreamFile& file, std::uint64_t bytes) {
   if (error != 0 && end != least) error = Allocate(descriptor, file.allocated, end = least);
   if (error != 0) return error;
   file.allocated = end;
-  const long window =
-      Syscall(SYS_mmap, 0, static_cast<long>(end - file.used), PROT_READ | PROT_WRITE, MAP_SHARED,
-              descriptor, static_cast<long>(file.used));
-  if (IsError(window)) return static_cast<int>(-window);
-  file.window = reinterpret_cast<char*>(window);
   if (file.next_extent_bytes < kLargestExtentBytes) file.next_extent_bytes *= 2;
   return 0;
+}
+
+/// Maps all that is allocated and not yet taken; 0 or an errno.
+int MapWindow(StreamFile& file) {
+  const int descriptor = Descriptor(file);
+  if (descriptor < 0) return -descriptor;
+  const long window =
+      Syscall(SYS_mmap, 0, static_cast<long>(file.allocated - file.used), PROT_READ | PROT_WRITE,
+              MAP_SHARED, descriptor, static_cast<long>(file.used));
+  if (IsError(window)) return static_cast<int>(-window);
+  file.window = reinterpret_cast<char*>(window);
+  file.window_begin = file.used;
+  file.window_end = file.allocated;
+  return 0;
+}
+
+/// `batch` is full: asks for it to be written, and drops one that was asked for long ago. Neither
+/// waits for the disk.
+void DropBehind(int descriptor, std::uint64_t batch) {
+  constexpr long kStartWriting = 2, kNoNeed = 4;
+  const auto start = static_cast<long>(batch * kBatchBytes);
+  Syscall(SYS_sync_file_range, descriptor, start, kBatchBytes, kStartWriting);
+  if (batch < kCachedBatches) return;
+  Syscall(SYS_fadvise64, descriptor, start - static_cast<long>(kCachedBatches * kBatchBytes),
+          kBatchBytes, kNoNeed);
 }
 
 }  // namespace
@@ -130,36 +151,37 @@ int CreateFile(StreamFile& file, const char* archive, const char* host_name, std
   return EEXIST;
 }
 
+bool TakePlace(StreamFile& file, std::size_t bytes, std::uint64_t* offset, int* error) {
+  *error = file.used + bytes > file.allocated ? Grow(file, bytes) : 0;
+  if (*error != 0) return false;
+  *offset = file.used;
+  file.used += bytes;
+  return true;
+}
+
 char* TakeBytes(StreamFile& file, std::size_t bytes, int* error) {
-  if (file.used + bytes > file.allocated) {
-    *error = Grow(file, bytes);
-    if (*error != 0) return nullptr;
-  }
-  char* taken = file.window;
-  file.window += bytes;
+  *error = file.used + bytes > file.allocated ? Grow(file, bytes) : 0;
+  if (*error == 0 && file.used + bytes > file.window_end) *error = MapWindow(file);
+  if (*error != 0) return nullptr;
+  char* taken = file.window + (file.used - file.window_begin);
   file.used += bytes;
   return taken;
 }
 
 int WriteBytes(StreamFile& file, std::uint64_t offset, const char* from, std::size_t bytes) {
-  constexpr long kDropBehind = 0x80;  // RWF_DONTCACHE, Linux 6.14
   const int descriptor = Descriptor(file);
   if (descriptor < 0) return -descriptor;
+  const std::uint64_t first_batch = offset / kBatchBytes;
   while (bytes > 0) {
-    const bool drop = offset >= kCachedBytes && !file.keep_cached;
-    iovec piece{const_cast<char*>(from), bytes};
-    const long written = Syscall(SYS_pwritev2, descriptor, Argument(&piece), 1,
-                                 static_cast<long>(offset), 0, drop ? kDropBehind : 0);
+    const long written = Syscall(SYS_pwrite64, descriptor, Argument(from), static_cast<long>(bytes),
+                                 static_cast<long>(offset));
     if (written == -EINTR) continue;
-    if (written < 0 && drop) {
-      file.keep_cached = true;
-      continue;
-    }
     if (written <= 0) return written == 0 ? EIO : static_cast<int>(-written);
     offset += static_cast<std::uint64_t>(written);
     from += written;
     bytes -= static_cast<std::size_t>(written);
   }
+  if (offset / kBatchBytes != first_batch) DropBehind(descriptor, first_batch);
   return 0;
 }
 

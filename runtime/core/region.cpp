@@ -7,7 +7,6 @@
 #include "arena.h"
 #include "recorder.h"
 #include "settings.h"
-#include "stipple/user.h"
 #include "stream.h"
 
 namespace stipple {
@@ -61,8 +60,9 @@ class Table {
   /// The id of an equal entry, or 0.
   std::uint32_t Find(const Entry& entry) {
     if (index_ == nullptr) return 0;
+    const std::uint32_t* ids = index_->ids;
     for (std::uint64_t i = entry.hash;; ++i) {
-      const std::uint32_t id = index_->ids[i & index_->mask];
+      const std::uint32_t id = ids[i & index_->mask];
       if (id == 0) return 0;
       if (Same((*this)[id], entry)) return id;
     }
@@ -87,13 +87,14 @@ class Table {
   static constexpr std::uint32_t kBlock = 4096;
   struct Index {
     std::uint64_t mask;
-    std::uint32_t ids[];
+    std::uint32_t ids[2];  // as many as the mask says
   };
 
   void Insert(Index& index, std::uint32_t id) {
+    std::uint32_t* ids = index.ids;
     std::uint64_t i = (*this)[id].hash;
-    while (index.ids[i & index.mask] != 0) ++i;
-    index.ids[i & index.mask] = id;
+    while (ids[i & index.mask] != 0) ++i;
+    ids[i & index.mask] = id;
   }
 
   bool MakeRoom() {

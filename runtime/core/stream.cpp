@@ -148,6 +148,7 @@ EventWord* ReserveRecord(std::uint64_t bytes) {
   const std::uint64_t slot = Reserve(control, bytes);
   if (slot + bytes <= control.end) [[likely]]
     return WordAt(slot);
+  if (ReadSettings().archive == nullptr) return nullptr;
   const std::uint64_t ticks = ReadTicks();
   const Inside inside;
   if (Thread* thread = KnownThread()) NoteWaste(*thread, slot);
@@ -176,7 +177,8 @@ std::uint64_t AppendEvent(std::uint32_t region, bool leave) {
 /// the thread. Events after it still find the stream.
 void EndThread(void* pointer) {
   auto* thread = static_cast<Thread*>(pointer);
-  if (stipple_stream != &thread->control) return;
+  // Zeroed: a forked child's, which has not recorded.
+  if (stipple_stream != &thread->control || thread->tid == 0) return;
   if (++thread->end_rounds < PTHREAD_DESTRUCTOR_ITERATIONS) {
     pthread_setspecific(end_key, thread);
     return;
@@ -192,6 +194,13 @@ void EndThread(void* pointer) {
   if (thread->chunk != nullptr)
     Syscall(SYS_madvise, Argument(thread->chunk), static_cast<long>(thread->chunk_bytes),
             MADV_DONTNEED);
+}
+
+/// The time, or that of the chunk's begin if a signal handler took the chunk since.
+std::uint64_t NotBeforeChunk(std::uint64_t ticks) {
+  const auto* thread = reinterpret_cast<const Thread*>(stipple_stream);
+  const std::uint64_t begin = reinterpret_cast<const ChunkHeader*>(thread->chunk)->ticks;
+  return ticks < begin ? begin : ticks;
 }
 
 /// One visit of a region that is counted only, by a thread that has no counts yet.
@@ -277,7 +286,7 @@ std::uint32_t stipple_slow_event(std::uint32_t token) {
     EventWord* place = ReserveSlowly(sizeof(EventWord), arrived);
     if (place != nullptr) {
       // What the runtime took here is outside of the visit.
-      const std::uint64_t ticks = leave ? arrived : ReadTicks();
+      const std::uint64_t ticks = leave ? NotBeforeChunk(arrived) : ReadTicks();
       const bool timed = (token & STIPPLE_NO_CLOCK) == 0;
       Commit(place, MakeEvent(timed ? ticks : 0, leave, RegionId{region}));
       return token;

@@ -20,7 +20,7 @@ struct Thread {
   std::uint64_t next_bytes;
   std::uint64_t sequence;
   std::uint64_t lost;
-  std::uint64_t waste;      // words from here to the chunk's end are zero for good; 0: none
+  std::uint64_t waste;     // words from here to the chunk's end are zero for good; 0: none
   std::uint64_t seen_cur;  // at the watch's last round
   Thread* next;
   std::uint32_t tid;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Cost of an event of a leaf function under the exact clock, against its floor: the same leaf with an
-// inline rdtsc and an 8-byte store into a small ring. Rounds alternate; CPU time of the thread,
+// Cost of an event of a leaf function under the exact clock, against its floor: the same leaf with
+// an inline rdtsc and an 8-byte store into a small ring. Rounds alternate; CPU time of the thread,
 // page faults and chunk switches included. Prints the median over the rounds.
 #include <time.h>
 
@@ -69,7 +69,8 @@ int main(int argc, char** argv) {
     traced_ns.push_back(NsPerEvent(calls, [&object] { TracedLeaf(object); }));
     ratios.push_back(traced_ns.back() / floor_ns.back());
   }
-  if (argc > 3) for (double ns : traced_ns) std::printf("%.2f ", ns);
+  if (argc > 3)
+    for (double ns : traced_ns) std::printf("%.2f ", ns);
   std::printf("floor %.2f ns, event %.2f ns, ratio %.3f (median of %d rounds, %ld events each)\n",
               Median(floor_ns), Median(traced_ns), Median(ratios), rounds, 2 * calls);
 }
