@@ -38,13 +38,12 @@ struct ProcessActivity {
 /// Sees the events of one location.
 class Collector {
  public:
-  Collector(const Trace& trace, const Location& location, std::vector<MpiCall>& calls,
-            std::vector<ProbeEvent>& probes, ProcessActivity& out)
+  Collector(const Trace& trace, const Location& location, MpiActivity& all, ProcessActivity& out)
       : trace_(trace),
         location_(location),
         process_(trace.ProcessOf(location)),
-        calls_(calls),
-        probes_(probes),
+        calls_(all.calls),
+        all_(all),
         out_(out) {
     for (const std::uint32_t region : process_.regions)
       is_mpi_.push_back(trace.regions()[region].kind == RegionKind::kMpi);
@@ -56,6 +55,7 @@ class Collector {
   }
 
   void Record(const EventWord* record, std::uint64_t ticks) {
+    if (KindOf(*record) == RecordKind::kMark) return Marked(RecordAt<Mark>(record), ticks);
     if (!process_.in_world) return;
     switch (KindOf(*record)) {
       case RecordKind::kMpiSend:
@@ -112,6 +112,11 @@ class Collector {
     return call_ == kNoIndex ? trace_.TimeNs(location_, ticks) : calls_[call_].begin_ns;
   }
 
+  void Marked(const Mark& r, std::uint64_t ticks) {
+    all_.marks.push_back({trace_.TimeNs(location_, ticks), process_.NameOf(r.name),
+                          static_cast<std::uint32_t>(location_.index)});
+  }
+
   void Send(const MpiSend& r, std::uint64_t ticks) {
     const std::uint32_t c = Defined(r.communicator);
     if (c == 0) return;
@@ -142,16 +147,16 @@ class Collector {
   void Probe(const MpiProbe& r, std::uint64_t ticks) {
     const std::uint32_t c = Defined(r.communicator);
     if (c == 0) return;
-    probes_.push_back({{c, At(c).WorldRank(r.sender), location_.rank, r.tag},
-                       trace_.TimeNs(location_, ticks),
-                       call_});
+    all_.probes.push_back({{c, At(c).WorldRank(r.sender), location_.rank, r.tag},
+                           trace_.TimeNs(location_, ticks),
+                           call_});
   }
 
   const Trace& trace_;
   const Location& location_;
   const Process& process_;
   std::vector<MpiCall>& calls_;
-  std::vector<ProbeEvent>& probes_;
+  MpiActivity& all_;
   ProcessActivity& out_;
   std::vector<std::uint8_t> is_mpi_;
   std::uint32_t depth_ = 0;
@@ -255,7 +260,7 @@ MpiActivity ReadMpiActivity(const Trace& trace) {
   MpiActivity a;
   std::vector<ProcessActivity> processes(trace.processes().size());
   for (const Location& l : trace.locations()) {
-    Collector collector(trace, l, a.calls, a.probes, processes[l.process_index]);
+    Collector collector(trace, l, a, processes[l.process_index]);
     trace.Scan(l, collector);
     collector.Finish();
   }

@@ -79,12 +79,20 @@ struct CollectiveEvent {
   std::uint32_t end_call = kNoIndex;  // where it was complete; blocking: where it was entered
 };
 
+/// A moment that the program marked. No MPI, but it comes with the same scan.
+struct MarkEvent {
+  std::int64_t time_ns = 0;
+  std::uint32_t name = 0;
+  std::uint32_t location = 0;
+};
+
 struct MpiActivity {
   std::vector<MpiCall> calls;          // by location, then time
   std::vector<SendEvent> sends;        // by channel, then order of posts; cancelled ones are gone
   std::vector<ReceiveEvent> receives;  // likewise
   std::vector<ProbeEvent> probes;
   std::vector<CollectiveEvent> collectives;  // by communicator, number, rank
+  std::vector<MarkEvent> marks;              // by location, then time
   std::uint64_t matched = 0;
   std::uint64_t reversed = 0;  // messages that were complete before their send was entered
   std::uint64_t bytes = 0;     // sent

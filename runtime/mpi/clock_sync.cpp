@@ -8,6 +8,7 @@
 
 #include "call.h"
 #include "communicator.h"
+#include "least_round_trip.h"
 #include "stipple/format.h"
 
 namespace stipple::mpi {
@@ -98,21 +99,6 @@ void Answer() {
 }
 
 }  // namespace
-
-ClockReading LeastRoundTrip(const ClockPeer& peer, uint32_t tries) {
-  ClockReading best = {.local_ticks = 0, .remote_ticks = 0, .round_trip_ticks = ~std::uint64_t{0}};
-  for (uint32_t i = 0; i < tries; ++i) {
-    const std::uint64_t asked = peer.local_ticks(peer.context);
-    const std::uint64_t remote = peer.ask(peer.context);
-    const std::uint64_t round_trip = peer.local_ticks(peer.context) - asked;
-    if (round_trip < best.round_trip_ticks) {
-      best = {.local_ticks = asked + round_trip / 2,
-              .remote_ticks = remote,
-              .round_trip_ticks = round_trip};
-    }
-  }
-  return best;
-}
 
 void SynchroniseClocks() {
   if (!decided) Decide();

@@ -124,7 +124,7 @@ Communicator Define(MPI_Comm comm, uint32_t id, Origin origin) {
       known.peer_offset = local_first ? groups.local_size : 0;
       Translate(groups.local, groups.local_size, members.data() + known.own_offset);
       Translate(groups.remote, groups.remote_size, members.data() + known.peer_offset);
-      origin = {.parent = 0, .creation = 0, .hashed = true, .tag = 0};
+      origin = {.parent = kWorldId, .creation = 0, .hashed = true, .tag = 0};
     }
     Write(id, origin, members.data(), size);
   }
@@ -164,7 +164,7 @@ Communicator Find(MPI_Comm comm) {
   if (world.size == 0 || IsNull(comm)) return known;
   if (communicators.Get(KeyOf(comm), &known)) return known;
   // Created where this layer does not look: inside a callback, or by a call of a newer MPI.
-  return Define(comm, NextId(), {.parent = 0, .creation = 0, .hashed = true, .tag = 0});
+  return Define(comm, NextId(), {.parent = kWorldId, .creation = 0, .hashed = true, .tag = 0});
 }
 
 void CommunicatorCreated(MPI_Comm parent, MPI_Comm created) {
@@ -185,7 +185,7 @@ void CommunicatorCreatedBetween(MPI_Comm created) {
   if (IsNull(created) || world.size == 0) return;
   Communicator known;
   if (communicators.Get(KeyOf(created), &known)) return;  // MPI_Comm_get_parent, once more
-  Define(created, NextId(), {.parent = 0, .creation = 0, .hashed = true, .tag = 0});
+  Define(created, NextId(), {.parent = kWorldId, .creation = 0, .hashed = true, .tag = 0});
 }
 
 Communicator Forget(MPI_Comm comm) {

@@ -6,9 +6,9 @@
 // collective, so all members count alike. Two kinds need more care:
 //  - MPI_Comm_create_group involves only the group, so ranks outside do not count. Its creation
 //    number is kCounted with a hash of tag, members and how often this very group was made before.
-//  - An intercommunicator has two groups that may share no parent. It is defined without a parent,
-//    as the union of its groups, the one with the lower first world rank first, its creation number
-//    being such a hash of the members. Peers and roots are recorded as ranks in that union.
+//  - An intercommunicator has two groups that may share no parent. It is defined as a child of
+//    MPI_COMM_WORLD, as the union of its groups, the one with the lower first world rank first, its
+//    creation number being such a hash. Peers and roots are recorded as ranks in that union.
 // World ranks of processes that were spawned or connected are unknown: -1.
 #ifndef STIPPLE_RUNTIME_MPI_COMMUNICATOR_H
 #define STIPPLE_RUNTIME_MPI_COMMUNICATOR_H
@@ -56,6 +56,9 @@ void BeginCommunicators();
 
 /// What is known of `comm`; defined on the spot if it came from nowhere. id 0 if it is null.
 Communicator Find(MPI_Comm comm);
+
+/// Whether a message can go to `rank`: not MPI_PROC_NULL, and not a mistake that MPI will report.
+inline bool IsPeer(const Communicator& on, int rank) { return rank >= 0 && rank < on.peer_count; }
 
 /// A rank of `comm`'s peers as recorded.
 inline int32_t PeerOf(const Communicator& on, int rank) { return rank + on.peer_offset; }

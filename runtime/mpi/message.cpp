@@ -131,8 +131,9 @@ std::uint64_t BytesOf(int count, MPI_Datatype datatype) {
 
 void RecordSend(const Visit& visit, int count, MPI_Datatype datatype, int dest, int tag,
                 MPI_Comm comm) {
-  if (dest == MPI_PROC_NULL) return;
-  AppendSend(visit.enter_ticks(), SendTo(Find(comm), count, datatype, dest, tag), 0);
+  const Communicator on = Find(comm);
+  if (!IsPeer(on, dest)) return;
+  AppendSend(visit.enter_ticks(), SendTo(on, count, datatype, dest, tag), 0);
 }
 
 void RecordReceive(int result, MPI_Comm comm, const MPI_Status& status) {
@@ -153,8 +154,9 @@ void RecordProbe(MPI_Comm comm, const MPI_Status& status) {
 
 Request PostSend(const Visit& visit, int count, MPI_Datatype datatype, int dest, int tag,
                  MPI_Comm comm) {
-  if (dest == MPI_PROC_NULL) return {};
-  Request send = SendTo(Find(comm), count, datatype, dest, tag);
+  const Communicator on = Find(comm);
+  if (!IsPeer(on, dest)) return {};
+  Request send = SendTo(on, count, datatype, dest, tag);
   send.number = NextRequestNumber();
   AppendSend(visit.enter_ticks(), send, send.number);
   return send;
@@ -168,8 +170,9 @@ Request PostReceive(const Visit& visit, int source, MPI_Comm comm) {
 }
 
 Request DescribeSend(int count, MPI_Datatype datatype, int dest, int tag, MPI_Comm comm) {
-  if (dest == MPI_PROC_NULL) return {};
-  Request send = SendTo(Find(comm), count, datatype, dest, tag);
+  const Communicator on = Find(comm);
+  if (!IsPeer(on, dest)) return {};
+  Request send = SendTo(on, count, datatype, dest, tag);
   send.number = NextRequestNumber();
   send.persistent = true;
   send.active = false;

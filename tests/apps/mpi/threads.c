@@ -13,12 +13,13 @@ static int rank;
 static void* Exchange(void* argument) {
   const int thread = *(const int*)argument;
   for (int round = 0; round < kRounds; ++round) {
-    int out = round, in = -1;
+    int out[8] = {round}, in[8] = {-1};
+    const int count = 1 + (round + thread) % 8; /* a message mistaken for another shows */
     MPI_Request requests[2];
-    MPI_Irecv(&in, 1, MPI_INT, 1 - rank, thread, comms[thread], &requests[0]);
-    MPI_Isend(&out, 1, MPI_INT, 1 - rank, thread, comms[thread], &requests[1]);
+    MPI_Irecv(in, 8, MPI_INT, 1 - rank, 7, comms[thread], &requests[0]);
+    MPI_Isend(out, count, MPI_INT, 1 - rank, 7, comms[thread], &requests[1]);
     MPI_Waitall(2, requests, MPI_STATUSES_IGNORE);
-    if (in != round) MPI_Abort(MPI_COMM_WORLD, 1);
+    if (in[0] != round) MPI_Abort(MPI_COMM_WORLD, 1);
   }
   return NULL;
 }
