@@ -3,75 +3,103 @@
 
 #include <algorithm>
 #include <map>
+#include <span>
+#include <tuple>
 #include <utility>
 
 namespace stipple {
 namespace {
 
-/// All that an event touches of a region, in one cache line's half.
+/// All that an event touches of a region.
 struct RegionTicks {
   std::uint64_t calls = 0;
   std::uint64_t inclusive = 0;
   std::uint64_t exclusive = 0;
-  std::uint32_t open = 0;  // how often it is on the stack
+  std::uint64_t open = 0;  // how often it is on the stack
 };
 
 struct Frame {
-  std::uint32_t region;
+  RegionTicks* region;
   std::uint64_t enter;  // of the visit
 };
 
 /// Charges the time between two events to the region on top of the stack. Ticks are clamped into
-/// the selected span, so time outside it is nobody's.
+/// the selected span, so time outside it is nobody's. Below the outermost frame lies one of a
+/// region that is none, so that the stack is never empty.
 class ProfileVisitor {
  public:
-  ProfileVisitor(std::uint32_t region_count, std::uint64_t begin, std::uint64_t end)
-      : regions_(region_count), begin_(begin), end_(end), last_(begin) {
-    stack_.reserve(1024);
-  }
+  /// What each event touches: a local object of the scan, so that it stays in registers.
+  struct Hot {
+    ProfileVisitor* owner;
+    RegionTicks* regions;
+    Frame* top;
+    Frame* limit;
+    std::uint64_t begin;
+    std::uint64_t end;
+    std::uint64_t last;
 
-  void Function(std::uint32_t region, bool leave, std::uint64_t ticks) {
-    const std::uint64_t now = ticks < begin_ ? begin_ : ticks > end_ ? end_ : ticks;
-    if (!stack_.empty()) regions_[stack_.back().region].exclusive += now - last_;
-    last_ = now;
-    if (!leave) {
-      RegionTicks& r = regions_[region];
-      r.calls += ticks >= begin_ && ticks <= end_;
-      ++r.open;
-      stack_.push_back({region, now});
-    } else if (!stack_.empty() && stack_.back().region == region) [[likely]] {
-      Pop(now);
-    } else if (regions_[region].open != 0) {
-      while (stack_.back().region != region) Pop(now);
-      Pop(now);
-    } else {
-      ++unmatched_leaves_;
+    void Function(std::uint32_t region, bool leave, std::uint64_t ticks) {
+      const std::uint64_t now = ticks < begin ? begin : ticks > end ? end : ticks;
+      RegionTicks* const r = regions + region;
+      top->region->exclusive += now - last;
+      last = now;
+      if (!leave) {
+        r->calls += now == ticks;
+        ++r->open;
+        if (top == limit) [[unlikely]] {
+          top = owner->Grow();
+          limit = owner->Limit();
+        }
+        *++top = {r, now};
+      } else if (top->region == r) [[likely]] {
+        Pop(now);
+      } else if (r->open != 0) {
+        while (top->region != r) Pop(now);
+        Pop(now);
+      }
     }
+    void Record(const EventWord*, std::uint64_t) {}
+
+    void Pop(std::uint64_t now) {
+      RegionTicks* const r = top->region;
+      const std::uint64_t enter = top->enter;
+      --top;
+      if (--r->open == 0) r->inclusive += now - enter;
+    }
+  };
+
+  ProfileVisitor(std::uint32_t region_count, std::uint64_t begin, std::uint64_t end)
+      : regions_(region_count + 1), stack_(1024) {
+    stack_.front() = {&regions_.back(), 0};
+    hot_ = {this, regions_.data(), stack_.data(), Limit(), begin, end, begin};
   }
-  void Record(const EventWord*, std::uint64_t) {}
+  ProfileVisitor(const ProfileVisitor&) = delete;
+  ProfileVisitor& operator=(const ProfileVisitor&) = delete;
+
+  Hot Begin() const { return hot_; }
+  void End(const Hot& hot) { hot_ = hot; }
 
   /// Ends the frames that are still open.
   void Finish(std::uint64_t ticks) {
-    const std::uint64_t now = std::clamp(ticks, begin_, end_);
-    if (!stack_.empty() && now > last_) regions_[stack_.back().region].exclusive += now - last_;
-    while (!stack_.empty()) Pop(std::max(now, last_));
+    const std::uint64_t now = std::max(hot_.last, std::clamp(ticks, hot_.begin, hot_.end));
+    hot_.top->region->exclusive += now - hot_.last;
+    while (hot_.top != stack_.data()) hot_.Pop(now);
   }
-  const std::vector<RegionTicks>& regions() const { return regions_; }
+  /// By region of the process.
+  std::span<const RegionTicks> regions() const { return {regions_.data(), regions_.size() - 1}; }
 
  private:
-  void Pop(std::uint64_t now) {
-    const Frame frame = stack_.back();
-    stack_.pop_back();
-    RegionTicks& r = regions_[frame.region];
-    if (--r.open == 0) r.inclusive += now - frame.enter;
+  Frame* Limit() { return stack_.data() + stack_.size() - 1; }
+  /// Doubles a full stack; returns its top.
+  Frame* Grow() {
+    const std::size_t used = stack_.size();
+    stack_.resize(2 * used);
+    return stack_.data() + used - 1;
   }
 
   std::vector<RegionTicks> regions_;
   std::vector<Frame> stack_;
-  std::uint64_t begin_;
-  std::uint64_t end_;
-  std::uint64_t last_;
-  std::uint64_t unmatched_leaves_ = 0;
+  Hot hot_{};
 };
 
 double Seconds(double ns) { return ns * 1e-9; }

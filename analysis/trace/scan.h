@@ -79,6 +79,21 @@ constexpr std::uint64_t TicksAfter(std::uint64_t now, std::uint64_t low, std::ui
 /// End of what was written: zeros behind it were never reserved.
 const EventWord* WrittenEnd(const Chunk& chunk);
 
+/// A visitor may keep what each event touches in a part of its own that the scan holds as a local
+/// object (Begin hands it out, End takes it back): only then can the compiler keep it in registers.
+template <class Visitor>
+concept HasHotPart = requires(Visitor& visitor) {
+  visitor.End(visitor.Begin());
+};
+template <class Visitor>
+Visitor& HotPartOf(Visitor& visitor) {
+  return visitor;
+}
+template <HasHotPart Visitor>
+auto HotPartOf(Visitor& visitor) {
+  return visitor.Begin();
+}
+
 /// Scans at least `budget` words from `at` (fewer at the end of a chunk), within one chunk. The
 /// visitor has
 ///   void Function(std::uint32_t region, bool leave, std::uint64_t ticks)   region < region_count
@@ -101,6 +116,7 @@ bool ScanSome(const ThreadStream& thread, std::uint32_t region_count, std::uint6
   std::uint64_t unclocked = at.unclocked;
   std::uint64_t function_events = 0;
   std::uint64_t undefined = 0;
+  decltype(auto) hot = HotPartOf(visitor);
   while (w < stop) {
     const EventWord word = *w;
     std::uint32_t region = static_cast<std::uint32_t>(word & kRegionMask);
@@ -118,7 +134,7 @@ bool ScanSome(const ThreadStream& thread, std::uint32_t region_count, std::uint6
           const std::uint64_t ticks = w[1] < limit ? w[1] : limit;
           now = now > ticks ? now : ticks;
         }
-        visitor.Record(w, now);
+        hot.Record(w, now);
       } else {
         ++counts.open_records;
       }
@@ -147,9 +163,10 @@ bool ScanSome(const ThreadStream& thread, std::uint32_t region_count, std::uint6
       ++undefined;
     }
     ++function_events;
-    visitor.Function(region, IsLeave(word), now);
+    hot.Function(region, IsLeave(word), now);
     ++w;
   }
+  if constexpr (HasHotPart<Visitor>) visitor.End(hot);
   counts.function_events += function_events;
   counts.undefined_regions += undefined;
   at = w < end ? ScanPosition{at.chunk, w, now, step, unclocked}

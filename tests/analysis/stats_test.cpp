@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <map>
+
+#include "analysis/report/text.h"
+#include "analysis/stats/finding_of.h"
+#include "analysis/stats/message_matrix.h"
+#include "analysis/stats/profile.h"
+#include "analysis/stats/states.h"
+#include "analysis/stats/tables.h"
+#include "analysis/stats/timeline_of.h"
+#include "tests/analysis/archive_writer.h"
+
+namespace stipple {
+namespace {
+
+using testing::StreamWriter;
+using testing::TemporaryArchive;
+
+enum : std::uint32_t { kMain = 1, kWork, kHelp, kSend, kReceive, kWait, kBarrier, kSendrecv };
+
+/// A rank of an MPI program that lives from `begin` to `end`.
+class Rank {
+ public:
+  Rank(std::int32_t rank, std::int32_t size) : stream(static_cast<std::uint32_t>(rank + 1)) {
+    stream.World(rank, size);
+    for (const auto& [id, name] :
+         std::map<std::uint32_t, std::string>{{kMain, "main"}, {kWork, "work"}, {kHelp, "help"}})
+      stream.Region(id, name);
+    for (const auto& [id, name] : std::map<std::uint32_t, std::string>{{kSend, "MPI_Send"},
+                                                                       {kReceive, "MPI_Recv"},
+                                                                       {kWait, "MPI_Waitall"},
+                                                                       {kBarrier, "MPI_Barrier"},
+                                                                       {kSendrecv, "MPI_Sendrecv"}})
+      stream.Region(id, name, RegionKind::kMpi);
+    stream.NewChunk(1000);
+    stream.Enter(kMain, 1000);
+  }
+  void End(std::uint64_t ticks) {
+    stream.Leave(kMain, ticks);
+    stream.End(ticks);
+  }
+  void Call(std::uint32_t region, std::uint64_t begin, std::uint64_t end,
+            const std::function<void()>& inside = {}) {
+    stream.Enter(region, begin);
+    if (inside) inside();
+    stream.Leave(region, end);
+  }
+  void Send(std::int32_t to, std::int32_t tag, std::uint64_t begin, std::uint64_t end,
+            std::uint64_t bytes = 8) {
+    Call(kSend, begin, end, [&] { stream.Append(MpiSend{0, begin, bytes, 1, to, tag, 0}); });
+  }
+  void Post(std::uint32_t request, std::uint64_t ticks) {
+    stream.Append(MpiReceivePost{0, ticks, 1, request});
+  }
+  void Received(std::int32_t from, std::int32_t tag, std::uint64_t ticks, std::uint32_t request = 0,
+                std::uint64_t bytes = 8) {
+    stream.Append(MpiReceive{0, ticks, bytes, 1, from, tag, request});
+  }
+  void Receive(std::int32_t from, std::int32_t tag, std::uint64_t begin, std::uint64_t end) {
+    Call(kReceive, begin, end, [&] { Received(from, tag, end); });
+  }
+  void Barrier(std::uint64_t begin, std::uint64_t end) {
+    Call(kBarrier, begin, end, [&] {
+      stream.Append(MpiCollective{0, begin, 0, 0, 1, -1, kBarrier, 0});
+    });
+  }
+  StreamWriter stream;
+};
+
+struct Written {
+  explicit Written(const std::vector<Rank>& ranks) {
+    for (const Rank& r : ranks) archive.Add(r.stream);
+    trace = Trace::Open(archive.path());
+  }
+  TemporaryArchive archive;
+  Trace trace;
+};
+
+double Number(const Cell& cell) {
+  return std::holds_alternative<double>(cell) ? std::get<double>(cell)
+                                              : static_cast<double>(std::get<std::int64_t>(cell));
+}
+
+TEST(Profile, ExclusiveTimesSumToTheSpanAndRecursionCountsOnce) {
+  StreamWriter s(1);
+  for (const std::uint32_t r : {kMain, kWork, kHelp}) s.Region(r, "region" + std::to_string(r));
+  s.NewChunk(1000);
+  s.Enter(kMain, 1000);
+  s.Enter(kWork, 1100);
+  s.Enter(kWork, 1200);
+  s.Enter(kHelp, 1300);  // left by longjmp to main
+  s.Enter(kHelp, 1350);
+  s.Leave(kWork, 1400);
+  s.Leave(kWork, 1700);
+  s.Leave(kHelp, 1800);  // not open
+  s.Enter(kWork, 1900);  // open at the end
+  s.Enter(kHelp, 2000);
+  s.End(9000);
+  TemporaryArchive archive;
+  archive.Add(s);
+  const Trace trace = Trace::Open(archive.path());
+  const std::vector<RegionTime> times = ProfileOf(trace, trace.locations()[0], {});
+  double exclusive = 0;
+  for (const RegionTime& t : times) exclusive += t.exclusive_ns;
+  EXPECT_DOUBLE_EQ(exclusive, 1000);
+  EXPECT_DOUBLE_EQ(times[1].inclusive_ns, 1000);
+  EXPECT_DOUBLE_EQ(times[2].inclusive_ns, 700);
+  EXPECT_EQ(times[2].calls, 3U);
+  EXPECT_EQ(times[3].calls, 3U);
+  EXPECT_DOUBLE_EQ(times[3].inclusive_ns, 100);
+}
+
+TEST(Profile, PartsOfTheTimeSumToTheWhole) {
+  StreamWriter s(1);
+  s.Region(kMain, "main");
+  s.Region(kWork, "work");
+  s.NewChunk(1000);
+  s.Enter(kMain, 1000);
+  for (std::uint64_t t = 1100; t < 9000; t += 100) {
+    s.Enter(kWork, t);
+    s.Leave(kWork, t + 37);
+  }
+  s.Leave(kMain, 9000);
+  s.End(9000);
+  TemporaryArchive archive;
+  archive.Add(s);
+  const Trace trace = Trace::Open(archive.path());
+  double parts = 0;
+  std::uint64_t calls = 0;
+  for (std::int64_t begin = 0; begin < 8000; begin += 1000) {
+    const auto times =
+        ProfileOf(trace, trace.locations()[0], {begin, begin + 1000 - 1, std::nullopt});
+    calls += times[2].calls;
+    const auto exact = ProfileOf(trace, trace.locations()[0], {begin, begin + 1000, std::nullopt});
+    parts += exact[2].exclusive_ns;
+  }
+  const auto whole = ProfileOf(trace, trace.locations()[0], {});
+  EXPECT_NEAR(parts, whole[2].exclusive_ns, 1e-6);
+  EXPECT_EQ(calls, whole[2].calls);
+}
+
+TEST(Messages, MatchInTheOrderOfPostsNotOfCompletions) {
+  Rank sender(0, 2);
+  sender.Send(1, 5, 1100, 1150, 10);  // first of tag 5
+  sender.Send(1, 5, 1200, 1250, 20);  // second of tag 5
+  sender.Send(1, 9, 1300, 1350, 30);
+  sender.End(5000);
+  Rank receiver(1, 2);
+  receiver.Post(1, 1010);  // tag 5
+  receiver.Post(2, 1020);  // any tag: gets the 9, so it is no rival of the others
+  receiver.Post(3, 1030);  // any source, tag 5
+  receiver.Call(kWait, 1400, 1500, [&] {
+    receiver.Received(0, 5, 1410, 3, 20);  // the later post is complete first
+    receiver.Received(0, 9, 1420, 2, 30);
+    receiver.Received(0, 5, 1430, 1, 10);
+  });
+  receiver.End(5000);
+  const Written w({sender, receiver});
+  const MpiActivity mpi = ReadMpiActivity(w.trace);
+  EXPECT_EQ(mpi.matched, 3U);
+  EXPECT_EQ(mpi.Unmatched(), 0U);
+  for (const ReceiveEvent& r : mpi.receives) EXPECT_EQ(mpi.sends[r.send].bytes, r.bytes);
+}
+
+TEST(Messages, CancelledSendsAreGoneAndLostReceivesAreCounted) {
+  Rank sender(0, 2);
+  sender.stream.Append(MpiSend{0, 1100, 10, 1, 1, 5, 77});
+  sender.stream.Append(MpiRequestEnd{0, 1200, 77, 2});
+  sender.Send(1, 5, 1300, 1350, 20);
+  sender.Send(1, 6, 1400, 1450, 30);
+  sender.End(5000);
+  Rank receiver(1, 2);
+  receiver.Receive(0, 5, 1300, 1400);
+  receiver.End(5000);
+  const Written w({sender, receiver});
+  const MpiActivity mpi = ReadMpiActivity(w.trace);
+  EXPECT_EQ(mpi.matched, 1U);
+  EXPECT_EQ(mpi.sends.size(), 2U);
+  EXPECT_EQ(mpi.health.CountOf(Defect::kUnmatchedSend), 1U);
+  const Table volume = VolumeTable(Analysis(w.trace), {});
+  EXPECT_EQ(Number(volume.rows[0][2]), 50);  // unmatched ones count
+  EXPECT_EQ(TableJson(MessagesTable(Analysis(w.trace), {})),
+            "{\"rows\":[\"0\",\"1\"],\"columns\":[\"0\",\"1\"],\"values\":[[0,2],[0,0]]}\n");
+}
+
+/// Rank 0 works until 3000, then sends; rank 1 waits for it since 1100; both meet in a barrier.
+std::vector<Rank> LateSender() {
+  std::vector<Rank> ranks{Rank(0, 2), Rank(1, 2)};
+  ranks[0].Call(kWork, 1050, 2990);
+  ranks[0].Send(1, 5, 3000, 3100);
+  ranks[0].Barrier(3200, 4100);
+  ranks[0].End(5000);
+  ranks[1].Receive(0, 5, 1100, 3150);
+  ranks[1].Call(kHelp, 3160, 3990);
+  ranks[1].Barrier(4000, 4100);
+  ranks[1].End(5000);
+  return ranks;
+}
+
+TEST(States, SumToTheSpanAndIdleEndsWhenThePartnerArrives) {
+  const Written w(LateSender());
+  const std::vector<RankStates> states = StatesOf(Analysis(w.trace), {});
+  ASSERT_EQ(states.size(), 2U);
+  for (const RankStates& s : states) {
+    EXPECT_EQ(s.SpanNs(), 4000);
+    EXPECT_FALSE(s.system_ns.has_value());
+  }
+  EXPECT_EQ(states[0].idle_ns, 800);
+  EXPECT_EQ(states[0].message_ns, 200);
+  EXPECT_EQ(states[1].idle_ns, 1900);
+  EXPECT_EQ(states[1].message_ns, 250);
+  EXPECT_NE(TableJson(StatesTable(states)).find("\"system_s\":null"), std::string::npos);
+}
+
+TEST(Waits, NameTheCulpritAndWhereItWas) {
+  const Written w(LateSender());
+  const Table table = TableEntries()[4].make(w.trace, {}, false).table;
+  ASSERT_EQ(table.rows.size(), 2U);
+  EXPECT_EQ(std::get<std::string>(table.rows[0][0]), "late-sender");
+  EXPECT_EQ(Number(table.rows[0][1]), 1);
+  EXPECT_EQ(Number(table.rows[0][2]), 0);
+  EXPECT_NEAR(Number(table.rows[0][3]), 1900e-9, 1e-12);
+  EXPECT_EQ(std::get<std::string>(table.rows[0][4]), "work");
+  EXPECT_EQ(std::get<std::string>(table.rows[1][0]), "wait-at-barrier");
+  EXPECT_EQ(std::get<std::string>(table.rows[1][4]), "help");
+}
+
+TEST(Waits, ChainLeadsToTheRankThatBeganIt) {
+  std::vector<Rank> ranks{Rank(0, 3), Rank(1, 3), Rank(2, 3)};
+  ranks[0].Call(kWork, 1010, 2900);
+  ranks[0].Send(1, 1, 3000, 3010);
+  ranks[0].End(4000);
+  ranks[1].Receive(0, 1, 1100, 3020);  // waits for 0
+  ranks[1].Send(2, 1, 3100, 3110);
+  ranks[1].End(4000);
+  ranks[2].Receive(1, 1, 1200, 3120);  // waits for 1, which waits for 0
+  ranks[2].End(4000);
+  const Written w(ranks);
+  const Analysis analysis(w.trace);
+  const std::vector<Blame> blames = BlameOf(w.trace, analysis.mpi, analysis.waits, {});
+  double for_0 = 0;
+  double for_1 = 0;
+  for (const Blame& b : blames) {
+    if (b.waiter != 2) continue;
+    (b.culprit == 0 ? for_0 : for_1) += b.seconds;
+  }
+  EXPECT_NEAR(for_0, 1800e-9, 1e-12);
+  EXPECT_NEAR(for_1, 100e-9, 1e-12);
+  const Finding finding = FindingOf(w.trace);
+  EXPECT_EQ(finding.culprit, 0);
+  EXPECT_NE(finding.sentence.find("Ranks 1, 2 spend"), std::string::npos) << finding.sentence;
+  EXPECT_NE(finding.detail.find("work"), std::string::npos) << finding.detail;
+}
+
+TEST(Waits, SendThatReturnedBeforeTheReceiveWasPostedDidNotWait) {
+  std::vector<Rank> ranks{Rank(0, 2), Rank(1, 2)};
+  ranks[0].Send(1, 1, 1100, 1200);  // buffered
+  ranks[0].Send(1, 2, 1300, 2600);  // waits for the receive at 2500
+  ranks[0].End(5000);
+  ranks[1].Call(kWork, 1100, 2300);
+  ranks[1].Receive(0, 1, 2400, 2450);
+  ranks[1].Receive(0, 2, 2500, 2700);
+  ranks[1].End(5000);
+  const Written w(ranks);
+  const std::vector<RankStates> states = StatesOf(Analysis(w.trace), {});
+  EXPECT_EQ(states[0].idle_ns, 1200);
+  EXPECT_EQ(states[1].idle_ns, 0);
+}
+
+TEST(Finding, SerialRunIsComputation) {
+  StreamWriter s(1);
+  s.Region(kMain, "main");
+  s.Region(kWork, "work");
+  s.NewChunk(1000);
+  s.Enter(kMain, 1000);
+  s.Enter(kWork, 1100);
+  s.Leave(kWork, 1900);
+  s.Leave(kMain, 2000);
+  s.End(2000);
+  TemporaryArchive archive;
+  archive.Add(s);
+  EXPECT_EQ(FindingOf(Trace::Open(archive.path())).sentence,
+            "No rank waits for another: 100 % of the time is computation, most of it in work.");
+}
+
+TEST(Timeline, ColumnsHoldTheStatesExactly) {
+  const Written w(LateSender());
+  const Analysis analysis(w.trace);
+  for (const std::size_t columns : {1, 7, 1000}) {
+    const Timeline t = TimelineOf(analysis, 0, 4000e-9, columns);
+    ASSERT_EQ(t.rows.size(), 2U);
+    double idle = 0;
+    for (const StateShares& shares : t.rows[1].columns) {
+      idle += static_cast<double>(shares[static_cast<std::size_t>(State::kIdle)]);
+      double sum = 0;
+      for (const float share : shares) sum += static_cast<double>(share);
+      EXPECT_NEAR(sum, 1, 1e-4);
+    }
+    EXPECT_NEAR(idle * 4000 / static_cast<double>(columns), 1900, 0.5);
+    EXPECT_EQ(t.message_count, 1U);
+  }
+}
+
+TEST(Tables, EachNameOccursOnceAndWorksOnAnEmptyArchive) {
+  TemporaryArchive archive;
+  const Trace trace = Trace::Open(archive.path());
+  std::map<std::string_view, int> names;
+  for (const TableEntry& entry : TableEntries()) {
+    EXPECT_EQ(++names[entry.name], 1);
+    const Table table = entry.make(trace, {}, false).table;
+    EXPECT_EQ(table.name, entry.name);
+    EXPECT_TRUE(table.rows.empty()) << entry.name;
+  }
+}
+
+}  // namespace
+}  // namespace stipple

@@ -1,0 +1,86 @@
+#!/bin/sh
+# tools_test.sh STIPPLE SOURCE_DIR: what scripts rely on: exit statuses, where output goes, JSON keys, errors that name
+# what is known.
+set -u
+stipple=$1
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+failures=0
+
+fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
+# expect STATUS NAME COMMAND...: output in out, errors in err.
+expect() {
+  status=$1; name=$2; shift 2
+  "$@" >out 2>err; got=$?
+  [ "$got" -eq "$status" ] || { fail "$name: exit $got, not $status"; cat out err; }
+}
+has() { grep -qe "$2" "$1" || { fail "no '$2' in $1"; cat "$1"; }; }
+
+# Use.
+expect 0 help "$stipple" --help; has out "print an archive\|prove an archive"
+for command in flags run info check print stats report; do expect 0 "$command --help" "$stipple" $command --help; done
+expect 2 "unknown command" "$stipple" nonsense; has err "known: flags run info"
+expect 2 "unknown option" "$stipple" info --nonsense x; has err "known: --json"
+expect 2 "missing archive" "$stipple" info none.stipple; has err "none.stipple"
+expect 2 "unknown clock" "$stipple" run --clock sundial -- true; has err "known: exact, sparse:N"
+expect 2 "later option" "$stipple" run --sample 100 -- true; has err "known"
+expect 2 "no command" "$stipple" run -o x; has err "no command"
+expect 2 "no compiler" "$stipple" flags nonsense
+
+# An empty archive is read as far as it goes.
+mkdir empty.stipple
+expect 0 "info of nothing" "$stipple" info --json empty.stipple; has out '"events":0'
+expect 1 "check of nothing" "$stipple" check empty.stipple; has out "no stream"
+expect 2 "unknown table" "$stipple" stats empty.stipple --table nonsense; has err "profile states messages volume waits"
+expect 2 "unknown format" "$stipple" stats empty.stipple --table states --format nonsense; has err "text csv json"
+
+# Nothing recorded: said, with the reason, and the status is the command's.
+expect 3 "status" "$stipple" run -o none.stipple -- sh -c 'exit 3'; has err "nothing was recorded"
+expect 143 "signal" "$stipple" run -o none.stipple -- sh -c 'kill -TERM $$'
+expect 127 "no program" "$stipple" run -o none.stipple -- ./none
+[ -e none.stipple ] && fail "an empty archive was left behind"
+
+flags=$("$stipple" flags g++ 2>/dev/null) || { echo "no plugin for g++: the rest is skipped"; exit "$failures"; }
+cat >app.cpp <<'END'
+#include <unistd.h>
+#include <csignal>
+#include <cstdio>
+__attribute__((noinline)) int Fib(int n) { return n < 2 ? n : Fib(n - 1) + Fib(n - 2); }
+int main(int argc, char**) {
+  std::printf("%d\n", Fib(10));
+  std::fflush(stdout);
+  if (argc > 1) kill(getpid(), SIGKILL);
+}
+END
+g++ -O2 $flags app.cpp -o app || fail "compile"
+expect 0 "run" "$stipple" run -- ./app
+[ "$(cat out)" = 55 ] || fail "standard output is not the program's own"
+has err "recorded 180 events"; has err "next: stipple report app.stipple"
+expect 2 "existing archive" "$stipple" run -- ./app; has err "overwrite"
+expect 0 "overwrite" "$stipple" run --overwrite -- ./app
+mkdir precious; touch precious/file
+expect 2 "no archive to overwrite" "$stipple" run -o precious --overwrite -- ./app
+[ -e precious/file ] || fail "a folder that is no archive was removed"
+expect 0 "check" "$stipple" check app.stipple; has out "sound"
+expect 0 "info" "$stipple" info --json app.stipple
+for key in '"locations":\[{"rank":0,"process":0,"thread":0,"events":180}\]' '"ranks":1' '"lost":0' \
+  '"unmatched_messages":0' '"span_s":' '"clock":{'; do has out "$key"; done
+expect 0 "profile" "$stipple" stats app.stipple --table profile --format json
+has out '"region":"Fib(int)","file":"app.cpp","line":4,"calls":89,"inclusive_s":'
+expect 0 "states" "$stipple" stats app.stipple --table states --format json
+has out '{"rank":0,"user_s":.*,"system_s":null,"message_s":0.0,"idle_s":0.0}'
+expect 0 "messages" "$stipple" stats app.stipple --table messages --format json
+has out '{"rows":\["0"\],"columns":\["0"\],"values":\[\[0\]\]}'
+expect 2 "--per-rank" "$stipple" stats app.stipple --table messages --per-rank
+expect 2 "--ranks" "$stipple" stats app.stipple --table profile --ranks 0-3; has err "ranks 0-0"
+expect 0 "canonical" "$stipple" print --canonical app.stipple
+[ "$(head -3 out | tr '\n' ';')" = "location 0 0 0;enter main;enter Fib(int);" ] || { fail canonical; head -3 out; }
+
+# After kill -9 every event is there and the unclean end is told.
+expect 137 "killed" "$stipple" run -o killed.stipple -- ./app x
+expect 1 "check of the killed" "$stipple" check killed.stipple; has out "did not end in order"
+expect 0 "canonical of the killed" "$stipple" print --canonical killed.stipple
+[ "$(grep -c Fib out)" = 178 ] || fail "events of the killed run are missing"
+
+exit "$failures"
