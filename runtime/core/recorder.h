@@ -10,6 +10,7 @@
 
 struct stipple_name;  // user.h
 
+#pragma GCC visibility push(default)
 extern "C" {
 
 /// Begins this process's stream if it has not begun; until this or the first stipple_register the
@@ -46,5 +47,6 @@ void stipple_record_mark(struct stipple_name* name);
 void stipple_record_counter(struct stipple_name* name, double value);
 void stipple_record_host(void);
 }
+#pragma GCC visibility pop
 
 #endif

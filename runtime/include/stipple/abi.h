@@ -25,17 +25,19 @@
 #ifndef STIPPLE_ABI_H
 #define STIPPLE_ABI_H
 
-#include <stdint.h>
-
 #define STIPPLE_ABI 1
 
 /* The id slot: region in the low 23 bits (0: no events), mode in the high byte. */
-#define STIPPLE_REGION_MASK 0x007fffffu
-#define STIPPLE_LEAVE 0x00800000u      /* in an event word and in eax of `slow`, never in a slot */
-#define STIPPLE_COUNT_ONLY 0x01000000u /* count the visit, write no event; the exit gets token 0 \
+#define STIPPLE_REGION_MASK 0x007fffff
+#define STIPPLE_LEAVE 0x00800000      /* in an event word and in eax of `slow`, never in a slot */
+#define STIPPLE_COUNT_ONLY 0x01000000 /* count the visit, write no event; the exit gets token 0 \
                                         */
-#define STIPPLE_NO_CLOCK 0x02000000u   /* write the event without reading the clock */
-#define STIPPLE_MODE_MASK 0xff000000u  /* any of these: the slow path */
+#define STIPPLE_NO_CLOCK 0x02000000   /* write the event without reading the clock */
+#define STIPPLE_MODE_MASK 0xff000000  /* any of these: the slow path */
+
+#ifndef __ASSEMBLER__
+
+#include <stdint.h>
 
 /* One instrumented function. Strings are found relative to the field, so nothing needs relocation
  * at load. */
@@ -69,6 +71,7 @@ struct stipple_dso {
 #ifdef __cplusplus
 extern "C" {
 #endif
+#pragma GCC visibility push(default)
 
 /* Gives every descriptor of the object an id and lets it record. A dso of another ABI is left
  * untouched. The strings are copied: the object may be unloaded. The same name, file and line get
@@ -78,8 +81,11 @@ void stipple_register(struct stipple_dso* dso);
 /* Sets every id of the object to 0. To be called before it is unmapped. */
 void stipple_unregister(struct stipple_dso* dso);
 
+#pragma GCC visibility pop
 #ifdef __cplusplus
 }
+#endif
+
 #endif
 
 #endif

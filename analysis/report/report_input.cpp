@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+#include "analysis/report/report_input.h"
+
+#include <fmt/format.h>
+
+#include "analysis/report/text.h"
+#include "analysis/stats/finding_of.h"
+#include "analysis/stats/health_check.h"
+#include "analysis/stats/message_matrix.h"
+#include "analysis/stats/profile.h"
+#include "analysis/stats/states.h"
+#include "analysis/stats/timeline_of.h"
+#include "analysis/trace/trace.h"
+
+namespace stipple {
+namespace {
+
+constexpr std::size_t kDetailParts = 12;
+constexpr int kMostNarrowings = 8;
+
+std::string RanksText(const Trace& trace) {
+  const auto count = static_cast<std::uint64_t>(trace.RankCount());
+  if (!trace.HasHost()) return CountText(count, "rank");
+  return CountText(count - 1, "node") + " and a host";
+}
+
+std::vector<std::string> FactsOf(const Analysis& analysis, const TraceHealth& health) {
+  const Trace& trace = analysis.trace;
+  const std::uint64_t lost = health.LostEvents();
+  std::vector<std::string> facts = {RanksText(trace),
+                                    SecondsText(static_cast<double>(trace.SpanNs()) * 1e-9),
+                                    CountText(trace.EventCount(), "event")};
+  if (!analysis.mpi.sends.empty()) {
+    facts.push_back(CountText(analysis.mpi.sends.size(), "message"));
+    facts.push_back(BytesText(analysis.mpi.bytes));
+  }
+  facts.push_back(lost == 0 ? "no event lost" : CountText(lost, "event") + " lost");
+  return facts;
+}
+
+/// The worst period, narrowed until its messages can be drawn.
+Timeline DetailOf(const Analysis& analysis, const Timeline& whole, std::size_t columns) {
+  auto [begin_s, end_s] = WorstPeriod(whole, kDetailParts);
+  Timeline detail = TimelineOf(analysis, begin_s, end_s, columns);
+  for (int i = 0; i < kMostNarrowings && detail.message_count > kDrawnMessages; ++i) {
+    std::tie(begin_s, end_s) = WorstPeriod(detail, 4);
+    detail = TimelineOf(analysis, begin_s, end_s, columns);
+  }
+  return detail;
+}
+
+}  // namespace
+
+ReportInput ReportInputOf(const Trace& trace, std::size_t columns) {
+  const Analysis analysis(trace);
+  const Selection all;
+  const std::vector<Blame> blames = BlameOf(trace, analysis.mpi, analysis.waits, all);
+  const TraceHealth health = CheckArchive(trace);
+  ReportInput input;
+  input.title = trace.Program();
+  input.finding = FindingOf(analysis, all, blames);
+  input.facts = FactsOf(analysis, health);
+  input.timeline = TimelineOf(analysis, 0, static_cast<double>(trace.SpanNs()) * 1e-9, columns);
+  input.detail = DetailOf(analysis, input.timeline, columns);
+  input.states = StatesTable(StatesOf(analysis, all));
+  input.messages = MessagesTable(analysis, all);
+  input.volume = VolumeTable(analysis, all);
+  input.profile = ProfileTable(trace, all, false);
+  input.waits = WaitsTable(trace, blames);
+  for (const Problem& p : health.problems()) input.health.push_back(TextOf(p));
+  return input;
+}
+
+}  // namespace stipple

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: MIT
+#include "analysis/stats/finding_of.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <numeric>
+
+#include "analysis/stats/profile.h"
+#include "analysis/stats/states.h"
+
+namespace stipple {
+namespace {
+
+// Below this share of the ranks' time waiting is not what the run is about.
+constexpr double kNotableShare = 0.03;
+// A rank that is to blame for this share of the waiting is named.
+constexpr double kBlameShare = 0.4;
+// Who lost less than this share of what the one who lost most did is not listed.
+constexpr double kVictimShare = 0.1;
+
+std::string Number(const char* format, double value) {
+  char text[64];
+  std::snprintf(text, sizeof(text), format, value);
+  return text;
+}
+
+std::string SecondsText(double seconds) {
+  return seconds < 1e-3 ? Number("%.0f us", seconds * 1e6)
+         : seconds < 1  ? Number("%.3g ms", seconds * 1e3)
+                        : Number("%.3g s", seconds);
+}
+
+/// Numbers of a run as text.
+class Words {
+ public:
+  explicit Words(const Trace& trace) : trace_(trace), noun_(trace.HasHost() ? "node" : "rank") {}
+
+  /// "rank 0", "the host"
+  std::string One(int rank) const {
+    return trace_.IsHost(rank) ? "the host" : noun_ + " " + std::to_string(rank);
+  }
+  std::string Noun() const { return noun_; }
+  /// "Ranks 1-3, 7 and the host"; whether it is more than one is told to the caller.
+  std::string Many(std::vector<int> ranks) const {
+    std::ranges::sort(ranks);
+    const bool host = std::erase_if(ranks, [this](int r) { return trace_.IsHost(r); }) > 0;
+    std::string list;
+    for (std::size_t i = 0; i < ranks.size();) {
+      std::size_t j = i;
+      while (j + 1 < ranks.size() && ranks[j + 1] == ranks[j] + 1) ++j;
+      list += (list.empty() ? " " : ", ") + std::to_string(ranks[i]);
+      if (j > i) list += (j == i + 1 ? ", " : "-") + std::to_string(ranks[j]);
+      i = j + 1;
+    }
+    if (ranks.empty()) return "The host";
+    const std::string noun = trace_.HasHost() ? "Node" : "Rank";
+    return noun + (ranks.size() > 1 ? "s" : "") + list + (host ? " and the host" : "");
+  }
+
+ private:
+  const Trace& trace_;
+  std::string noun_;
+};
+
+struct Totals {
+  double span = 0;
+  double user = 0;
+  double idle = 0;
+};
+
+Totals Sum(const std::vector<RankStates>& states) {
+  Totals t;
+  for (const RankStates& s : states) {
+    t.span += static_cast<double>(s.SpanNs()) * 1e-9;
+    t.user += static_cast<double>(s.user_ns) * 1e-9;
+    t.idle += static_cast<double>(s.idle_ns) * 1e-9;
+  }
+  return t;
+}
+
+double MaxOverMean(const Trace& trace, const std::vector<RankStates>& states) {
+  double sum = 0;
+  double most = 0;
+  double count = 0;
+  for (const RankStates& s : states) {
+    if (trace.IsHost(s.rank) && states.size() > 1) continue;
+    sum += static_cast<double>(s.user_ns);
+    most = std::max(most, static_cast<double>(s.user_ns));
+    ++count;
+  }
+  return sum > 0 ? most / (sum / count) : 1;
+}
+
+std::vector<WaitedFor> WaitedForOf(const Trace& trace, const std::vector<Blame>& blames) {
+  std::map<int, WaitedFor> by_culprit;
+  std::map<int, double> longest;
+  for (const Blame& b : blames) {
+    WaitedFor& w = by_culprit[b.culprit];
+    w.rank = b.culprit;
+    w.name = trace.RankName(b.culprit);
+    w.seconds += b.seconds;
+    if (b.region != 0 && b.seconds > longest[b.culprit]) {
+      longest[b.culprit] = b.seconds;
+      w.region = trace.regions()[b.region].name;
+    }
+  }
+  std::vector<WaitedFor> sorted;
+  for (auto& [rank, w] : by_culprit) sorted.push_back(std::move(w));
+  std::ranges::stable_sort(sorted, std::greater<>(), &WaitedFor::seconds);
+  return sorted;
+}
+
+/// One rank holds the others up.
+void BlameOne(const Trace& trace, const std::vector<RankStates>& states,
+              const std::vector<Blame>& blames, Finding& f) {
+  const Words words(trace);
+  const WaitedFor& first = f.waited_for.front();
+  std::map<int, double> lost;
+  for (const Blame& b : blames)
+    if (b.culprit == first.rank) lost[b.waiter] += b.seconds;
+  double most = 0;
+  for (const auto& [rank, seconds] : lost) most = std::max(most, seconds);
+  std::vector<int> victims;
+  double waited = 0;
+  for (const auto& [rank, seconds] : lost) {
+    if (seconds < kVictimShare * most) continue;
+    victims.push_back(rank);
+    waited += seconds;
+  }
+  double span = 0;
+  for (const RankStates& s : states)
+    if (std::ranges::find(victims, s.rank) != victims.end())
+      span += static_cast<double>(s.SpanNs()) * 1e-9;
+  f.culprit = first.rank;
+  f.sentence = words.Many(victims) + (victims.size() == 1 ? " spends " : " spend ") +
+               PercentText(waited, span) + " of the run waiting for " + words.One(first.rank) + ".";
+  std::string who = words.One(first.rank);
+  who[0] = static_cast<char>(who[0] == 't' ? 'T' : who[0] - 'a' + 'A');
+  const double mean = waited / static_cast<double>(victims.size());
+  if (!first.region.empty()) f.detail = who + " was mostly in " + first.region + " meanwhile; ";
+  f.detail += "at most " + SecondsText(mean) + " of " +
+              SecondsText(static_cast<double>(trace.SpanNs()) * 1e-9) + " could be gained.";
+  f.detail[0] = f.detail[0] == 'a' ? 'A' : f.detail[0];
+}
+
+/// The region in which the ranks compute most, and its share of the computing time.
+std::pair<std::string, double> BusiestRegion(const Trace& trace, const Selection& selection) {
+  std::vector<double> sums(trace.regions().size());
+  for (const Location& l : trace.locations()) {
+    if (!l.IsMain() || !selection.HasRank(l.rank)) continue;
+    const std::vector<RegionTime> times = ProfileOf(trace, l, selection);
+    for (std::size_t r = 0; r < times.size(); ++r)
+      if (trace.regions()[r].kind != RegionKind::kMpi) sums[r] += times[r].exclusive_ns;
+  }
+  if (sums.empty()) return {};
+  const auto most = std::ranges::max_element(sums);
+  const double sum = std::accumulate(sums.begin(), sums.end(), 0.0);
+  if (sum <= 0) return {};
+  return {trace.regions()[static_cast<std::size_t>(most - sums.begin())].name, *most / sum};
+}
+
+void BlameNobody(const Trace& trace, const Selection& selection, const Totals& totals, Finding& f) {
+  const auto [region, share] = BusiestRegion(trace, selection);
+  const Words words(trace);
+  f.sentence = "No " + words.Noun() +
+               " waits for another: " + PercentText(totals.user, totals.span) +
+               " of the time is computation";
+  f.sentence += region.empty() ? "." : ", most of it in " + region + ".";
+  if (!region.empty())
+    f.detail = region + " itself takes " + PercentText(share, 1) + " of the computing time.";
+}
+
+void BlameImbalance(const Trace& trace, const Totals& totals, Finding& f) {
+  const Words words(trace);
+  const WaitedFor& first = f.waited_for.front();
+  f.sentence = "The " + words.Noun() + "s wait for each other " +
+               PercentText(totals.idle, totals.span) + " of the run; the busiest computes " +
+               Number("%.2f", f.max_over_mean) + " times the mean.";
+  double blamed = 0;
+  for (const WaitedFor& w : f.waited_for) blamed += w.seconds;
+  f.detail = "Most is waited for " + words.One(first.rank) + ": " +
+             PercentText(first.seconds, blamed) + " of the waiting" +
+             (first.region.empty() ? "." : ", while it was mostly in " + first.region + ".");
+}
+
+}  // namespace
+
+std::string PercentText(double part, double whole) {
+  const double percent = whole > 0 ? 100 * part / whole : 0;
+  return Number(percent > 0 && percent < 9.95 ? "%.1f %%" : "%.0f %%", percent);
+}
+
+Finding FindingOf(const Analysis& analysis, const Selection& selection,
+                  const std::vector<Blame>& blames) {
+  const Trace& trace = analysis.trace;
+  const std::vector<RankStates> states = StatesOf(analysis, selection);
+  const Totals totals = Sum(states);
+  Finding f;
+  f.waited_for = WaitedForOf(trace, blames);
+  f.max_over_mean = MaxOverMean(trace, states);
+  double blamed = 0;
+  for (const WaitedFor& w : f.waited_for) blamed += w.seconds;
+  if (totals.span <= 0) {
+    f.sentence = "The archive holds no events.";
+  } else if (f.waited_for.empty() || totals.idle < kNotableShare * totals.span) {
+    BlameNobody(trace, selection, totals, f);
+  } else if (f.waited_for.front().seconds >= kBlameShare * blamed) {
+    BlameOne(trace, states, blames, f);
+  } else {
+    BlameImbalance(trace, totals, f);
+  }
+  return f;
+}
+
+Finding FindingOf(const Trace& trace) {
+  const Analysis analysis(trace);
+  return FindingOf(analysis, {}, BlameOf(trace, analysis.mpi, analysis.waits, {}));
+}
+
+}  // namespace stipple

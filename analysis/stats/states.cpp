@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#include "analysis/stats/states.h"
+
+#include <map>
+
+namespace stipple {
+
+std::vector<RankStates> StatesOf(const Analysis& analysis, const Selection& selection) {
+  const Trace& trace = analysis.trace;
+  std::map<int, RankStates> by_rank;
+  for (std::size_t c = 0; c < analysis.mpi.calls.size(); ++c) {
+    const MpiCall& call = analysis.mpi.calls[c];
+    const Location& l = trace.locations()[call.location];
+    if (!l.IsMain() || !selection.HasRank(l.rank)) continue;
+    const std::int64_t begin = selection.Clamp(call.begin_ns);
+    const std::int64_t arrival = selection.Clamp(call.begin_ns + analysis.waits[c].idle_ns);
+    RankStates& s = by_rank[l.rank];
+    s.idle_ns += arrival - begin;
+    s.message_ns += selection.Clamp(call.end_ns) - arrival;
+  }
+  std::vector<RankStates> states;
+  for (const int rank : trace.RanksInOrder()) {
+    if (!selection.HasRank(rank)) continue;
+    const Location* l = trace.MainOf(rank);
+    RankStates s = by_rank[rank];
+    s.rank = rank;
+    s.user_ns =
+        selection.Clamp(l->end_ns) - selection.Clamp(l->begin_ns) - s.idle_ns - s.message_ns;
+    states.push_back(s);
+  }
+  return states;
+}
+
+Table StatesTable(const std::vector<RankStates>& states) {
+  Table table{"states",
+              TableShape::kRows,
+              {{"rank"}, {"user_s"}, {"system_s"}, {"message_s"}, {"idle_s"}},
+              {}};
+  const auto seconds = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-9; };
+  for (const RankStates& s : states)
+    table.rows.push_back({std::int64_t{s.rank}, seconds(s.user_ns),
+                          s.system_ns ? Cell(seconds(*s.system_ns)) : Cell(), seconds(s.message_ns),
+                          seconds(s.idle_ns)});
+  return table;
+}
+
+}  // namespace stipple

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#include "analysis/stats/tables.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "analysis/stats/analysis.h"
+#include "analysis/stats/finding_of.h"
+#include "analysis/stats/message_matrix.h"
+#include "analysis/stats/profile.h"
+#include "analysis/stats/states.h"
+
+namespace stipple {
+namespace {
+
+TableAnswer Profile(const Trace& trace, const Selection& selection, bool per_rank) {
+  TableAnswer answer{ProfileTable(trace, selection, per_rank), "No region was visited."};
+  const auto& rows = answer.table.rows;
+  if (rows.empty()) return answer;
+  double sum = 0;
+  for (const auto& row : rows) sum += std::get<double>(row.back());
+  const auto& first = rows.front();
+  const std::string& region = std::get<std::string>(first[per_rank ? 1 : 0]);
+  answer.headline = PercentText(std::get<double>(first.back()), sum) + " of the time is spent in " +
+                    region + " itself.";
+  return answer;
+}
+
+TableAnswer States(const Trace& trace, const Selection& selection, bool) {
+  const std::vector<RankStates> states = StatesOf(Analysis(trace), selection);
+  double span = 0;
+  double user = 0;
+  double idle = 0;
+  for (const RankStates& s : states) {
+    span += static_cast<double>(s.SpanNs());
+    user += static_cast<double>(s.user_ns);
+    idle += static_cast<double>(s.idle_ns);
+  }
+  return {StatesTable(states), "The ranks compute " + PercentText(user, span) +
+                                   " of their time and wait for each other " +
+                                   PercentText(idle, span) + "."};
+}
+
+/// Sum of a matrix's values.
+std::int64_t SumOf(const Table& matrix) {
+  std::int64_t sum = 0;
+  for (const auto& row : matrix.rows)
+    for (std::size_t c = 1; c < row.size(); ++c) sum += std::get<std::int64_t>(row[c]);
+  return sum;
+}
+
+TableAnswer Messages(const Trace& trace, const Selection& selection, bool) {
+  Table table = MessagesTable(Analysis(trace), selection);
+  std::string headline = std::to_string(SumOf(table)) + " messages were sent (sender = row).";
+  return {std::move(table), std::move(headline)};
+}
+
+TableAnswer Volume(const Trace& trace, const Selection& selection, bool) {
+  Table table = VolumeTable(Analysis(trace), selection);
+  std::string headline = std::to_string(SumOf(table)) + " bytes were sent (sender = row).";
+  return {std::move(table), std::move(headline)};
+}
+
+TableAnswer Waits(const Trace& trace, const Selection& selection, bool) {
+  const Analysis analysis(trace);
+  const std::vector<Blame> blames = BlameOf(trace, analysis.mpi, analysis.waits, selection);
+  const Finding finding = FindingOf(analysis, selection, blames);
+  return {WaitsTable(trace, blames), finding.sentence};
+}
+
+constexpr std::array kTables = {
+    TableEntry{"profile", Profile, "time and calls per region, most exclusive time first", true},
+    TableEntry{"states", States, "user, system, message and idle time of each rank"},
+    TableEntry{"messages", Messages, "how many messages each rank sent to each (sender = row)"},
+    TableEntry{"volume", Volume, "how many bytes each rank sent to each (sender = row)"},
+    TableEntry{"waits", Waits, "who waited for whom, why, and what the late rank was doing"}};
+
+}  // namespace
+
+std::span<const TableEntry> TableEntries() { return kTables; }
+
+}  // namespace stipple

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// stipple check: proves an archive sound.
+#include <fmt/format.h>
+
+#include "analysis/report/text.h"
+#include "analysis/stats/health_check.h"
+#include "analysis/tools/command.h"
+
+namespace stipple {
+
+int RunCheck(const Arguments& arguments) {
+  CLI::App app("Prove an archive sound. One line per problem; exit 0 only if there is none.",
+               "check");
+  std::string archive;
+  app.add_option("A", archive, "the archive")->required();
+  if (!Parse(app, arguments)) return 0;
+  const Trace trace = Trace::Open(archive);
+  const TraceHealth health = CheckArchive(trace);
+  std::string text;
+  for (const Problem& p : health.problems()) text += TextOf(p) + "\n";
+  if (health.Sound())
+    text = fmt::format("{}: sound, {} of {}\n", archive, CountText(trace.EventCount(), "event"),
+                       CountText(static_cast<std::uint64_t>(trace.RankCount()), "rank"));
+  WriteOut(text);
+  return health.Sound() ? 0 : 1;
+}
+
+}  // namespace stipple

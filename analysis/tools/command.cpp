@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#include "analysis/tools/command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include "analysis/trace/input_error.h"
+
+namespace stipple {
+namespace {
+
+std::string KnownOptions(const CLI::App& app) {
+  std::string known;
+  for (const CLI::Option* option : app.get_options())
+    if (!option->get_positional()) known += (known.empty() ? "" : " ") + option->get_name();
+  return known;
+}
+
+}  // namespace
+
+bool Parse(CLI::App& app, const Arguments& arguments) {
+  app.set_help_flag("-h,--help", "print this and stop");
+  Arguments reversed(arguments.rbegin(), arguments.rend());
+  try {
+    app.parse(std::move(reversed));
+  } catch (const CLI::CallForHelp&) {
+    WriteOut(app.help());
+    return false;
+  } catch (const CLI::ExtrasError&) {
+    std::string extra;
+    for (const std::string& word : app.remaining()) extra += (extra.empty() ? "" : " ") + word;
+    throw InputError("stipple " + app.get_name(),
+                     "unknown option or argument '" + extra + "'; known: " + KnownOptions(app));
+  } catch (const CLI::ParseError& e) {
+    throw InputError("stipple " + app.get_name(),
+                     std::string(e.what()) + "; known options: " + KnownOptions(app));
+  }
+  return true;
+}
+
+std::string LibraryDirectory() {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path self = fs::read_symlink("/proc/self/exe", error);
+  return (self.parent_path().parent_path() / "lib" / "stipple").lexically_normal();
+}
+
+void SelectionOptions::AddTo(CLI::App& app) {
+  app.add_option("--from", from_s, "begin, in seconds since the first event")->type_name("T");
+  app.add_option("--to", to_s, "end, in seconds since the first event")->type_name("T");
+  app.add_option("--ranks", ranks, "only these: 0-3,7,host")->type_name("R");
+}
+
+Selection SelectionOptions::For(const Trace& trace) const {
+  constexpr double kMostSeconds = 9e9;
+  Selection selection;
+  if (from_s != 0) selection.begin_ns = std::llround(std::clamp(from_s, 0.0, kMostSeconds) * 1e9);
+  if (to_s >= 0) selection.end_ns = std::llround(std::min(to_s, kMostSeconds) * 1e9);
+  if (selection.end_ns < selection.begin_ns)
+    throw InputError("--to", fmt::format("{} s is before --from {} s", to_s, from_s));
+  if (!ranks.empty()) selection.ranks = ParseRanks(trace, ranks);
+  return selection;
+}
+
+void WarnOfProblems(const Trace& trace, const TraceHealth& health) {
+  constexpr std::size_t kMost = 5;
+  const std::vector<Problem>& problems = health.problems();
+  for (std::size_t i = 0; i < std::min(kMost, problems.size()); ++i)
+    fmt::print(stderr, "stipple: {}\n", TextOf(problems[i]));
+  if (problems.size() > kMost)
+    fmt::print(stderr, "stipple: and {} further problems: stipple check {}\n",
+               problems.size() - kMost, trace.path());
+}
+
+void WriteOut(std::string_view text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+    std::_Exit(1);
+}
+
+}  // namespace stipple

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// A subcommand of `stipple`: one row of the table in stipple.cpp, one file.
+#ifndef STIPPLE_ANALYSIS_TOOLS_COMMAND_H
+#define STIPPLE_ANALYSIS_TOOLS_COMMAND_H
+
+#include <CLI/CLI.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "analysis/stats/selection.h"
+#include "analysis/trace/trace.h"
+
+namespace stipple {
+
+/// Arguments behind the subcommand's name. Returns the exit status; throws InputError.
+using Arguments = std::vector<std::string>;
+using CommandFunction = int (*)(const Arguments& arguments);
+
+struct Command {
+  std::string_view name;
+  CommandFunction run;
+  std::string_view description;
+};
+
+int RunFlags(const Arguments& arguments);
+int RunRun(const Arguments& arguments);
+int RunInfo(const Arguments& arguments);
+int RunCheck(const Arguments& arguments);
+int RunPrint(const Arguments& arguments);
+int RunStats(const Arguments& arguments);
+int RunReport(const Arguments& arguments);
+
+/// An option was not understood: exit 2.
+constexpr int kUsageExit = 2;
+
+/// Parses; a wrong option is an InputError that names the known ones. Returns false when help was
+/// asked for and printed.
+bool Parse(CLI::App& app, const Arguments& arguments);
+
+/// PREFIX/lib/stipple of the running program.
+std::string LibraryDirectory();
+
+/// --from, --to (seconds) and --ranks, which several commands have.
+struct SelectionOptions {
+  double from_s = 0;
+  double to_s = -1;
+  std::string ranks;
+
+  void AddTo(CLI::App& app);
+  Selection For(const Trace& trace) const;
+};
+
+/// Loss is shown on every output: one line a problem on standard error.
+void WarnOfProblems(const Trace& trace, const TraceHealth& health);
+
+/// Writes all of `text` to standard output; a closed pipe ends the program quietly.
+void WriteOut(std::string_view text);
+
+}  // namespace stipple
+
+#endif

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+// stipple flags: what makes a compiler trace.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <regex>
+
+#include "analysis/tools/command.h"
+#include "analysis/tools/process.h"
+#include "analysis/trace/input_error.h"
+
+namespace stipple {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Folder of the compiler's plugin: "gcc-12", "llvm-14". Asks the compiler, so that a wrapper
+/// (mpicxx) answers for the one behind it.
+std::string FolderOf(const std::string& compiler) {
+  const std::optional<std::string> version = OutputOf({compiler, "--version"});
+  if (!version)
+    throw InputError("stipple flags", "'" + compiler + " --version' cannot be run: no compiler?");
+  std::smatch match;
+  static const std::regex clang("clang version ([0-9]+)");
+  if (std::regex_search(*version, match, clang)) return fmt::format("llvm-{}", match[1].str());
+  if (version->find("Free Software Foundation") == std::string::npos)
+    throw InputError("stipple flags", "'" + compiler + "' is neither GCC nor clang");
+  for (const char* question : {"-dumpfullversion", "-dumpversion"}) {
+    const std::optional<std::string> full = OutputOf({compiler, question});
+    static const std::regex number("^([0-9]+)");
+    if (full && std::regex_search(*full, match, number))
+      return fmt::format("gcc-{}", match[1].str());
+  }
+  throw InputError("stipple flags", "'" + compiler + "' does not tell its version");
+}
+
+/// Folders that hold a plugin, sorted.
+std::vector<std::string> KnownFolders() {
+  std::vector<std::string> folders;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(LibraryDirectory(), error))
+    if (fs::exists(entry.path() / "stipple.so")) folders.push_back(entry.path().filename());
+  std::ranges::sort(folders);
+  return folders;
+}
+
+fs::path PluginOf(const std::string& compiler) {
+  const std::string folder = FolderOf(compiler);
+  fs::path plugin = fs::path(LibraryDirectory()) / folder / "stipple.so";
+  if (fs::exists(plugin)) return plugin;
+  std::string known;
+  for (const std::string& name : KnownFolders()) known.append(" ").append(name);
+  throw InputError("stipple flags", fmt::format("no plugin for {} ({}); there are plugins for:{}",
+                                                compiler, folder, known.empty() ? " none" : known));
+}
+
+std::string FlagsOf(const fs::path& plugin, bool link, bool is_static) {
+  const bool gcc = plugin.parent_path().filename().string().starts_with("gcc-");
+  std::string flags;
+  if (gcc) {  // with -flto functions are compiled, and instrumented, when linking
+    flags = fmt::format("-fplugin={}", plugin.string());
+  } else if (!link) {
+    flags = fmt::format("-fplugin={0} -fpass-plugin={0} -Wno-unused-command-line-argument",
+                        plugin.string());
+  }
+  if (is_static)
+    flags += fmt::format("{}-Wl,-u,stipple_register -L{} -lstipple", flags.empty() ? "" : " ",
+                         LibraryDirectory());
+  return flags;
+}
+
+}  // namespace
+
+int RunFlags(const Arguments& arguments) {
+  CLI::App app("Print the flags that make a compiler trace, or say that there is no plugin for it.",
+               "flags");
+  std::string compiler;
+  bool link = false;
+  bool is_static = false;
+  app.add_option("COMPILER", compiler, "g++, clang++, mpicxx, gfortran, ...")->required();
+  app.add_flag("--link", link, "what linking needs: with -flto, or --static");
+  app.add_flag("--static", is_static, "with --link: for -static")->needs("--link");
+  if (!Parse(app, arguments)) return 0;
+  WriteOut(FlagsOf(PluginOf(compiler), link, is_static) + "\n");
+  return 0;
+}
+
+}  // namespace stipple

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+// stipple info: what an archive holds.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "analysis/report/text.h"
+#include "analysis/tools/command.h"
+#include "analysis/trace/mpi_activity.h"
+
+namespace stipple {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Info {
+  const Trace& trace;
+  const MpiActivity& mpi;
+  const TraceHealth& health;
+};
+
+double Seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
+
+Json ClockJson(const Info& info) {
+  const ClockReport& clock = info.trace.clock();
+  const auto& processes = info.trace.processes();
+  return {{"kind", clock.kind == ClockKind::kVirtual ? "virtual" : "tsc"},
+          {"settings", processes.empty() ? "" : processes.front().stream->settings},
+          {"hz", clock.hz > 0 ? Json(clock.hz) : Json(nullptr)},
+          {"computers", clock.computers},
+          {"synchronised", clock.synchronised},
+          {"residual_s", clock.synchronised ? Json(clock.residual_ns * 1e-9) : Json(nullptr)},
+          {"reversed_messages", info.mpi.reversed}};
+}
+
+/// What was recorded and what could not be: of the processes together, "no" outweighs "yes".
+Json RecordedJson(const Trace& trace) {
+  Json recorded = Json::object();
+  for (const Process& p : trace.processes()) {
+    for (const AvailabilityDefinition& a : p.stream->availability) {
+      const std::string what(a.what);
+      recorded[what] = recorded.value(what, true) && a.available;
+    }
+  }
+  return recorded;
+}
+
+std::string InfoJson(const Info& info) {
+  const Trace& trace = info.trace;
+  Json locations = Json::array();
+  for (const Location& l : trace.locations())
+    locations.push_back({{"rank", l.rank},
+                         {"process", l.process},
+                         {"thread", l.thread},
+                         {"events", trace.CountsOf(l).Events()}});
+  Json problems = Json::array();
+  for (const Problem& p : info.health.problems())
+    problems.push_back(
+        {{"problem", EntryOf(p.defect).name}, {"where", p.where}, {"count", p.count}});
+  const Json json = {
+      {"program", trace.Program()},        {"locations", locations},
+      {"ranks", trace.RankCount()},        {"processes", trace.processes().size()},
+      {"events", trace.EventCount()},      {"lost", info.health.LostEvents()},
+      {"messages", info.mpi.matched},      {"unmatched_messages", info.mpi.Unmatched()},
+      {"span_s", Seconds(trace.SpanNs())}, {"clock", ClockJson(info)},
+      {"recorded", RecordedJson(trace)},   {"problems", problems}};
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string ClockText(const Info& info) {
+  const ClockReport& clock = info.trace.clock();
+  if (clock.kind == ClockKind::kVirtual) return "virtual time";
+  if (clock.computers <= 1)
+    return fmt::format("one time-stamp counter, {:.6f} MHz", clock.hz / 1e6);
+  if (!clock.synchronised)
+    return fmt::format("{} computers, not synchronised by readings", clock.computers);
+  return fmt::format("{} computers, synchronised to {}; {} against the order of time",
+                     clock.computers, SecondsText(clock.residual_ns * 1e-9),
+                     CountText(info.mpi.reversed, "message"));
+}
+
+std::string InfoText(const Info& info) {
+  const Trace& trace = info.trace;
+  const auto rank_count = static_cast<std::uint64_t>(trace.RankCount());
+  std::string text = fmt::format(
+      "{}: {} on {} in {}, {}\n", trace.path(), CountText(trace.EventCount(), "event"),
+      CountText(rank_count, "rank"), SecondsText(Seconds(trace.SpanNs())),
+      info.health.LostEvents() == 0 ? "none lost" : CountText(info.health.LostEvents()) + " lost");
+  text += fmt::format("program    {}\n", trace.Program());
+  text += fmt::format("processes  {}\n", trace.processes().size());
+  text += fmt::format("threads    {}\n", trace.locations().size());
+  text +=
+      fmt::format("messages   {} matched ({} sent), {} unmatched\n", CountText(info.mpi.matched),
+                  BytesText(info.mpi.bytes), CountText(info.mpi.Unmatched()));
+  text += fmt::format("clock      {}\n\n", ClockText(info));
+  Table table{"locations",
+              TableShape::kRows,
+              {{"rank"}, {"process"}, {"thread"}, {"events"}, {"begin_s"}, {"end_s"}},
+              {}};
+  for (const Location& l : trace.locations())
+    table.rows.push_back({trace.RankName(l.rank), std::int64_t{l.process}, std::int64_t{l.thread},
+                          static_cast<std::int64_t>(trace.CountsOf(l).Events()),
+                          Seconds(l.begin_ns), Seconds(l.end_ns)});
+  return text + TableText(table);
+}
+
+}  // namespace
+
+int RunInfo(const Arguments& arguments) {
+  CLI::App app("What an archive holds.", "info");
+  std::string archive;
+  bool json = false;
+  app.add_option("A", archive, "the archive")->required();
+  app.add_flag("--json", json, "as one JSON object");
+  if (!Parse(app, arguments)) return 0;
+  const Trace trace = Trace::Open(archive);
+  const MpiActivity mpi = ReadMpiActivity(trace);
+  TraceHealth health = trace.Health();
+  health.Add(mpi.health);
+  const Info info{trace, mpi, health};
+  WriteOut(json ? InfoJson(info) : InfoText(info));
+  if (!json) WarnOfProblems(trace, health);
+  return 0;
+}
+
+}  // namespace stipple

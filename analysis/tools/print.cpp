@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+// stipple print: events as text, all locations in one order of time; canonical: one location after
+// the other.
+#include <fmt/format.h>
+
+#include <queue>
+#include <vector>
+
+#include "analysis/report/event_text.h"
+#include "analysis/tools/command.h"
+
+namespace stipple {
+namespace {
+
+constexpr std::size_t kBufferBytes = 1 << 20;
+
+/// Collects lines and writes them in large pieces.
+class Output {
+ public:
+  ~Output() { WriteOut({buffer_.data(), buffer_.size()}); }
+  template <class... Values>
+  void Line(fmt::format_string<Values...> format, Values&&... values) {
+    fmt::format_to(std::back_inserter(buffer_), format, std::forward<Values>(values)...);
+    buffer_.push_back('\n');
+    if (buffer_.size() < kBufferBytes) return;
+    WriteOut({buffer_.data(), buffer_.size()});
+    buffer_.clear();
+  }
+
+ private:
+  fmt::memory_buffer buffer_;
+};
+
+void PrintCanonical(const Trace& trace, const Selection& selection) {
+  Output out;
+  for (const Location& l : trace.locations()) {
+    if (!selection.HasRank(l.rank)) continue;
+    out.Line("location {} {} {}", l.rank, l.process, l.thread);
+    EventCursor cursor(trace, l);
+    while (const Event* event = cursor.Next()) {
+      if (!selection.WholeTime() && !selection.HasTime(trace.TimeNs(l, event->ticks))) continue;
+      if (const std::string text = CanonicalText(trace, l, *event); !text.empty())
+        out.Line("{}", text);
+    }
+  }
+}
+
+/// A location that is being printed.
+struct Reader {
+  EventCursor cursor;
+  std::string name;  // "3.0", "host.1", "3/1.0" for a further process
+  const Event* event = nullptr;
+  std::int64_t time_ns = 0;
+  std::size_t depth = 0;
+
+  bool Advance(const Trace& trace) {
+    event = cursor.Next();
+    if (event != nullptr) time_ns = trace.TimeNs(cursor.location(), event->ticks);
+    return event != nullptr;
+  }
+};
+
+std::string LocationName(const Trace& trace, const Location& l) {
+  const std::string process = l.process == 0 ? "" : fmt::format("/{}", l.process);
+  return fmt::format("{}{}.{}", trace.RankName(l.rank), process, l.thread);
+}
+
+void PrintOne(const Trace& trace, const Selection& selection, Reader& r, Output& out) {
+  const bool enter = r.event->record == nullptr && !r.event->leave;
+  const bool leave = r.event->record == nullptr && r.event->leave;
+  if (leave && r.depth > 0) --r.depth;
+  if (selection.HasTime(r.time_ns))
+    out.Line("{:>4}.{:09} {:>7}  {:{}}{}", r.time_ns / 1'000'000'000, r.time_ns % 1'000'000'000,
+             r.name, "", 2 * std::min<std::size_t>(r.depth, 64),
+             EventText(trace, r.cursor.location(), *r.event));
+  if (enter) ++r.depth;
+}
+
+void PrintMerged(const Trace& trace, const Selection& selection) {
+  std::vector<Reader> readers;
+  for (const Location& l : trace.locations())
+    if (selection.HasRank(l.rank))
+      readers.push_back({EventCursor(trace, l), LocationName(trace, l)});
+  const auto later = [&readers](std::size_t a, std::size_t b) {
+    return std::pair(readers[a].time_ns, a) > std::pair(readers[b].time_ns, b);
+  };
+  std::priority_queue<std::size_t, std::vector<std::size_t>, decltype(later)> next(later);
+  for (std::size_t i = 0; i < readers.size(); ++i)
+    if (readers[i].Advance(trace)) next.push(i);
+  Output out;
+  while (!next.empty()) {
+    const std::size_t i = next.top();
+    next.pop();
+    if (readers[i].time_ns > selection.end_ns) continue;
+    PrintOne(trace, selection, readers[i], out);
+    if (readers[i].Advance(trace)) next.push(i);
+  }
+}
+
+}  // namespace
+
+int RunPrint(const Arguments& arguments) {
+  CLI::App app("Events as text, in order of time.", "print");
+  std::string archive;
+  bool canonical = false;
+  SelectionOptions selection;
+  app.add_option("A", archive, "the archive")->required();
+  app.add_flag("--canonical", canonical, "for comparing: location after location, no times or ids");
+  selection.AddTo(app);
+  if (!Parse(app, arguments)) return 0;
+  const Trace trace = Trace::Open(archive);
+  (canonical ? PrintCanonical : PrintMerged)(trace, selection.For(trace));
+  WarnOfProblems(trace, trace.Health());
+  return 0;
+}
+
+}  // namespace stipple

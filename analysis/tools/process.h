@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+// Starting other programs.
+#ifndef STIPPLE_ANALYSIS_TOOLS_PROCESS_H
+#define STIPPLE_ANALYSIS_TOOLS_PROCESS_H
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace stipple {
+
+/// Standard output of a command that ends with status 0; none when it cannot be run or fails.
+std::optional<std::string> OutputOf(const std::vector<std::string>& command);
+
+/// Runs a command to its end with this process's files, and passes on the signals that this process
+/// is sent. Returns its exit status, 128 + n for signal n, 127 when there is no such program, 126
+/// when it cannot be run.
+int RunToEnd(const std::vector<std::string>& command);
+
+}  // namespace stipple
+
+#endif

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// stipple report: computes what a report shows; the library that draws it is opened only here.
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <array>
+#include <filesystem>
+
+#include "analysis/report/report_input.h"
+#include "analysis/tools/command.h"
+#include "analysis/trace/input_error.h"
+
+namespace stipple {
+namespace {
+
+constexpr std::size_t kColumns = 1000;
+
+using DrawFunction = decltype(&stipple_draw_report);
+
+DrawFunction OpenViews() {
+  const std::string path = LibraryDirectory() + "/libstipple-views.so";
+  void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (library == nullptr) throw InputError("stipple report", dlerror());
+  void* symbol = dlsym(library, "stipple_draw_report");
+  if (symbol == nullptr) throw InputError(path, "draws no reports");
+  return reinterpret_cast<DrawFunction>(symbol);
+}
+
+}  // namespace
+
+int RunReport(const Arguments& arguments) {
+  CLI::App app("A self-contained HTML page; no display needed.", "report");
+  std::string archive;
+  std::string output;
+  bool mono = false;
+  app.add_option("A", archive, "the archive")->required();
+  app.add_option("-o", output, "the page to write (default: NAME.html)")->type_name("F.html");
+  app.add_flag("--mono", mono, "patterns instead of colours");
+  if (!Parse(app, arguments)) return 0;
+  while (archive.size() > 1 && archive.back() == '/') archive.pop_back();
+  if (output.empty()) output = std::filesystem::path(archive).stem().string() + ".html";
+  const Trace trace = Trace::Open(archive);
+  const DrawFunction draw = OpenViews();
+  ReportInput input = ReportInputOf(trace, kColumns);
+  input.mono = mono;
+  std::array<char, 1024> error{};
+  if (draw(&input, output.c_str(), error.data(), error.size()) != 0)
+    throw InputError(output, error.data());
+  std::string text = input.finding.sentence + "\n";
+  if (!input.finding.detail.empty()) text += input.finding.detail + "\n";
+  WriteOut(text + output + "\n");
+  WarnOfProblems(trace, trace.Health());
+  return 0;
+}
+
+}  // namespace stipple

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: MIT
+// stipple run: records a command. Nothing on standard output, which is the command's own.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
+
+#include "analysis/report/text.h"
+#include "analysis/tools/command.h"
+#include "analysis/tools/launcher.h"
+#include "analysis/tools/process.h"
+#include "analysis/trace/input_error.h"
+
+namespace stipple {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RunOptions {
+  std::string archive;
+  bool overwrite = false;
+  std::string clock = "exact";
+  std::vector<std::string> command;
+};
+
+std::optional<RunOptions> ParseRun(const Arguments& arguments) {
+  RunOptions options;
+  CLI::App app("Run a command and record it. The exit status is the command's.", "run");
+  app.footer("-- COMMAND [ARGUMENTS]      what to run, behind the options");
+  app.add_option("-o", options.archive, "the archive to make (default: PROGRAM.stipple)")
+      ->type_name("A");
+  app.add_flag("--overwrite", options.overwrite, "replace an archive that is there");
+  app.add_option("--clock", options.clock,
+                 "exact, or sparse:N: read the clock for one event in N (a power of two)")
+      ->type_name("MODE");
+  const auto dashes = std::ranges::find(arguments, "--");
+  if (!Parse(app, {arguments.begin(), dashes})) return std::nullopt;
+  if (dashes == arguments.end() || dashes + 1 == arguments.end())
+    throw InputError("stipple run", "no command: stipple run -o A -- COMMAND");
+  options.command = {dashes + 1, arguments.end()};
+  return options;
+}
+
+void CheckClock(const std::string& clock) {
+  if (clock == "exact") return;
+  constexpr std::string_view kSparse = "sparse:";
+  constexpr unsigned kMostSparse = 4096;
+  unsigned n = 0;
+  if (clock.starts_with(kSparse)) {
+    const char* end = clock.data() + clock.size();
+    const auto [stop, error] = std::from_chars(clock.data() + kSparse.size(), end, n);
+    if (error == std::errc() && stop == end && n > 0 && n <= kMostSparse && (n & (n - 1)) == 0)
+      return;
+  }
+  throw InputError("--clock", fmt::format("'{}' is unknown; known: exact, sparse:N with N a power "
+                                          "of two up to {}",
+                                          clock, kMostSparse));
+}
+
+/// Only streams (and nothing else) make an archive that may be removed.
+bool LooksLikeArchive(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_directory(fs::symlink_status(path, error))) return false;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path, error))
+    if (!entry.is_regular_file() || entry.path().extension() != ".stream") return false;
+  return !error;
+}
+
+void MakeArchive(const fs::path& path, bool overwrite) {
+  std::error_code error;
+  if (fs::exists(fs::symlink_status(path, error))) {
+    if (!overwrite)
+      throw InputError(path.string(), "exists; --overwrite replaces it, -o names another");
+    if (!LooksLikeArchive(path))
+      throw InputError(path.string(), "is not an archive, so --overwrite leaves it alone");
+    fs::remove_all(path, error);
+    if (error) throw InputError(path.string(), error.message());
+  }
+  fs::create_directories(path, error);
+  if (error) throw InputError(path.string(), error.message());
+}
+
+/// The libraries to preload, before those that the user preloads.
+std::string Preload() {
+  const fs::path directory = LibraryDirectory();
+  if (!fs::exists(directory / "libstipple.so"))
+    throw InputError((directory / "libstipple.so").string(),
+                     "is missing; the installation is not complete");
+  std::string preload = directory / "libstipple.so";
+  if (fs::exists(directory / "libstipple-mpi.so"))
+    preload += ":" + std::string(directory / "libstipple-mpi.so");
+  if (preload.find(' ') != std::string::npos)
+    throw InputError(directory.string(), "LD_PRELOAD cannot name a path with a space in it");
+  return preload;
+}
+
+bool IsOpenMpi(const std::string& launcher) {
+  const std::optional<std::string> version = OutputOf({launcher, "--version"});
+  return version && (version->find("Open MPI") != std::string::npos ||
+                     version->find("OpenRTE") != std::string::npos);
+}
+
+/// Sets the environment of the command; returns the command, with the launcher told to pass it on.
+std::vector<std::string> Prepare(const RunOptions& options) {
+  const std::string preload = Preload();
+  const char* own = std::getenv("LD_PRELOAD");
+  const std::string all = own == nullptr || *own == '\0' ? preload : preload + ":" + own;
+  // Asked before the runtime is preloaded: the launcher's version is not to be recorded.
+  const char* list = std::getenv("OMPI_MCA_mca_base_env_list");
+  const std::vector<std::string> variables = {"LD_PRELOAD", "STIPPLE_ARCHIVE", "STIPPLE_CLOCK"};
+  std::vector<std::string> command = options.command;
+  if (list == nullptr) command = WithExports(command, variables, preload, IsOpenMpi);
+  setenv("LD_PRELOAD", all.c_str(), 1);
+  setenv("STIPPLE_ARCHIVE", fs::absolute(options.archive).c_str(), 1);
+  setenv("STIPPLE_CLOCK", options.clock.c_str(), 1);
+  if (list != nullptr) {  // Open MPI refuses both the list and -x
+    std::string longer = list;
+    for (const std::string& name : variables) longer += ";" + name;
+    setenv("OMPI_MCA_mca_base_env_list", longer.c_str(), 1);
+  }
+  return command;
+}
+
+std::uint64_t BytesOnDisk(const fs::path& path) {
+  std::uint64_t bytes = 0;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path, error))
+    if (entry.is_regular_file(error)) bytes += entry.file_size(error);
+  return bytes;
+}
+
+/// Two lines: what was recorded, what to do next.
+void Summarise(const RunOptions& options, int status) {
+  const std::string& archive = options.archive;
+  const std::string& program = options.command[ProgramIndex(options.command)];
+  if (fs::is_empty(archive)) {
+    std::error_code error;
+    fs::remove(archive, error);
+    if (status == 127 || status == 126) return;  // said already that the command did not run
+    fmt::print(stderr,
+               "stipple: nothing was recorded: no event came from {}\n"
+               "stipple: was it built with the plugin (stipple flags g++), and is it dynamically "
+               "linked?\n",
+               program);
+    return;
+  }
+  const Trace trace = Trace::Open(archive);
+  const TraceHealth health = trace.Health();
+  const std::uint64_t lost = health.LostEvents();
+  fmt::print(stderr, "stipple: recorded {} in {} of {}: {}, {}{}\n",
+             CountText(trace.EventCount(), "event"),
+             fmt::format("{} process{}", trace.processes().size(),
+                         trace.processes().size() == 1 ? "" : "es"),
+             CountText(static_cast<std::uint64_t>(trace.RankCount()), "rank"),
+             BytesText(BytesOnDisk(archive)), lost == 0 ? "none lost" : CountText(lost) + " lost",
+             health.Sound() ? "" : fmt::format(" (problems: stipple check {})", archive));
+  fmt::print(stderr, "stipple: next: stipple report {} -o {}.html\n", archive,
+             fs::path(archive).stem().string());
+}
+
+}  // namespace
+
+int RunRun(const Arguments& arguments) {
+  std::optional<RunOptions> options = ParseRun(arguments);
+  if (!options) return 0;
+  CheckClock(options->clock);
+  if (options->archive.empty()) {
+    const std::string& program = options->command[ProgramIndex(options->command)];
+    options->archive = fs::path(program).filename().string() + ".stipple";
+  }
+  while (options->archive.size() > 1 && options->archive.back() == '/') options->archive.pop_back();
+  const std::vector<std::string> command = Prepare(*options);
+  MakeArchive(options->archive, options->overwrite);
+  const int status = RunToEnd(command);
+  Summarise(*options, status);
+  return status;
+}
+
+}  // namespace stipple

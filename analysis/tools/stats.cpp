@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// stipple stats: one table, for people, spreadsheets or scripts.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "analysis/report/text.h"
+#include "analysis/stats/tables.h"
+#include "analysis/tools/command.h"
+#include "analysis/trace/input_error.h"
+
+namespace stipple {
+namespace {
+
+struct FormatEntry {
+  std::string_view name;
+  std::string (*text)(const Table&);
+};
+constexpr FormatEntry kFormats[] = {{"text", TableText}, {"csv", TableCsv}, {"json", TableJson}};
+
+/// The row of that name; an InputError lists the names there are.
+template <class Rows>
+const auto& Choose(const Rows& rows, std::string_view option, const std::string& name) {
+  const auto entry =
+      std::ranges::find_if(rows, [&name](const auto& row) { return row.name == name; });
+  if (entry != std::end(rows)) return *entry;
+  std::string known;
+  for (const auto& row : rows) known.append(" ").append(row.name);
+  throw InputError(option, "'" + name + "' is unknown; known:" + known);
+}
+
+std::string TableHelp() {
+  std::string text = "Tables:\n";
+  for (const TableEntry& t : TableEntries())
+    text += fmt::format("  {:<10}{}\n", t.name, t.description);
+  return text;
+}
+
+}  // namespace
+
+int RunStats(const Arguments& arguments) {
+  CLI::App app("A statistic as a table.", "stats");
+  std::string archive;
+  std::string table;
+  std::string format = "text";
+  bool per_rank = false;
+  SelectionOptions selected;
+  app.add_option("A", archive, "the archive")->required();
+  app.add_option("--table", table, "which; see below")->required()->type_name("NAME");
+  app.add_option("--format", format, "text, csv or json")->type_name("FORMAT");
+  app.add_flag("--per-rank", per_rank, "a row for each rank instead of the sum (profile)");
+  selected.AddTo(app);
+  app.footer(TableHelp());
+  if (!Parse(app, arguments)) return 0;
+  const TableEntry& entry = Choose(TableEntries(), "--table", table);
+  const FormatEntry& form = Choose(kFormats, "--format", format);
+  // `states` is by rank anyway.
+  if (per_rank && !entry.per_rank && entry.name != "states")
+    throw InputError("--per-rank", fmt::format("table '{}' cannot be given by rank", entry.name));
+  const Trace trace = Trace::Open(archive);
+  const TableAnswer answer = entry.make(trace, selected.For(trace), per_rank);
+  if (form.name == "text") WriteOut(answer.headline + "\n\n");
+  WriteOut(form.text(answer.table));
+  WarnOfProblems(trace, trace.Health());
+  return 0;
+}
+
+}  // namespace stipple

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#include "analysis/trace/health.h"
+
+#include <algorithm>
+#include <array>
+
+namespace stipple {
+namespace {
+
+constexpr std::array kDefects = {
+    DefectEntry{Defect::kEmptyArchive, "empty-archive", "archive holds no stream",
+                "archives hold no stream"},
+    DefectEntry{Defect::kUnreadableFile, "unreadable-file", "file cannot be read",
+                "files cannot be read"},
+    DefectEntry{Defect::kBadFileHeader, "bad-file-header", "file header is damaged",
+                "file headers are damaged"},
+    DefectEntry{Defect::kTruncatedFile, "truncated-file", "chunk is cut off by the end of the file",
+                "chunks are cut off by the end of the file"},
+    DefectEntry{Defect::kBadChunk, "bad-chunk", "16 KiB block is damaged and was skipped",
+                "16 KiB blocks are damaged and were skipped"},
+    DefectEntry{Defect::kMissingChunk, "missing-chunk", "chunk of events is missing",
+                "chunks of events are missing"},
+    DefectEntry{Defect::kBadTime, "bad-time", "chunk begins at an impossible time",
+                "chunks begin at an impossible time"},
+    DefectEntry{Defect::kBadRecord, "bad-record", "damaged record hides the rest of its chunk",
+                "damaged records hide the rest of their chunks"},
+    DefectEntry{Defect::kOpenRecord, "open-record", "record was begun and never finished",
+                "records were begun and never finished"},
+    DefectEntry{Defect::kUncommitted, "uncommitted-event", "event was begun and never committed",
+                "events were begun and never committed"},
+    DefectEntry{Defect::kLostEvents, "lost-event", "event could not be recorded",
+                "events could not be recorded"},
+    DefectEntry{Defect::kBadDefinition, "bad-definition", "definition is damaged",
+                "definitions are damaged"},
+    DefectEntry{Defect::kUndefinedRegion, "undefined-region", "event of an undefined region",
+                "events of undefined regions"},
+    DefectEntry{Defect::kUndefinedName, "undefined-name", "mark or counter without a name",
+                "marks or counters without a name"},
+    DefectEntry{Defect::kUndefinedCommunicator, "undefined-communicator",
+                "event on an undefined communicator", "events on undefined communicators"},
+    DefectEntry{Defect::kLeaveWithoutEnter, "leave-without-enter", "leave event has no enter event",
+                "leave events have no enter event"},
+    DefectEntry{Defect::kUnclosedProcess, "unclosed-process",
+                "process did not end in order (killed?)",
+                "processes did not end in order (killed?)"},
+    DefectEntry{Defect::kMissingRank, "missing-rank", "rank has no stream", "ranks have no stream"},
+    DefectEntry{Defect::kDuplicateRank, "duplicate-rank",
+                "further process claims this rank; its messages are not matched",
+                "further processes claim this rank; their messages are not matched"},
+    DefectEntry{Defect::kUnmatchedSend, "unmatched-send", "sent message was never received",
+                "sent messages were never received"},
+    DefectEntry{Defect::kUnmatchedReceive, "unmatched-receive",
+                "received message was never seen sent", "received messages were never seen sent"},
+    DefectEntry{Defect::kIncompleteCollective, "incomplete-collective",
+                "collective operation lacks some of its ranks",
+                "collective operations lack some of their ranks"},
+    DefectEntry{Defect::kClockUnknown, "clock-unknown", "clock without a known rate",
+                "clocks without a known rate"},
+    DefectEntry{Defect::kClockUnsynchronised, "clock-unsynchronised",
+                "computer's clock was never compared with the others'",
+                "computers' clocks were never compared with the others'"},
+};
+
+}  // namespace
+
+const DefectEntry& EntryOf(Defect defect) {
+  return *std::ranges::find(kDefects, defect, &DefectEntry::defect);
+}
+
+std::string TextOf(const Problem& problem) {
+  const DefectEntry& entry = EntryOf(problem.defect);
+  return (problem.where.empty() ? "" : problem.where + ": ") + std::to_string(problem.count) + " " +
+         std::string(problem.count == 1 ? entry.one : entry.many);
+}
+
+void TraceHealth::Add(Defect defect, std::string_view where, std::uint64_t count) {
+  if (count == 0) return;
+  for (Problem& p : problems_) {
+    if (p.defect == defect && p.where == where) {
+      p.count += count;
+      return;
+    }
+  }
+  problems_.push_back({defect, std::string(where), count});
+}
+
+void TraceHealth::Add(const TraceHealth& other) {
+  for (const Problem& p : other.problems_) Add(p.defect, p.where, p.count);
+}
+
+std::uint64_t TraceHealth::CountOf(Defect defect) const {
+  std::uint64_t count = 0;
+  for (const Problem& p : problems_)
+    if (p.defect == defect) count += p.count;
+  return count;
+}
+
+std::uint64_t TraceHealth::LostEvents() const {
+  return CountOf(Defect::kLostEvents) + CountOf(Defect::kUncommitted) +
+         CountOf(Defect::kOpenRecord);
+}
+
+}  // namespace stipple

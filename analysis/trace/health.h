@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+// What is wrong with an archive: every defect the reader meets is counted by kind and carried to
+// every output. A defect never stops the reader; only an archive that is not there does.
+#ifndef STIPPLE_ANALYSIS_TRACE_HEALTH_H
+#define STIPPLE_ANALYSIS_TRACE_HEALTH_H
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stipple {
+
+enum class Defect {
+  kEmptyArchive,
+  kUnreadableFile,
+  kBadFileHeader,
+  kTruncatedFile,
+  kBadChunk,
+  kMissingChunk,
+  kBadTime,
+  kBadRecord,
+  kOpenRecord,
+  kUncommitted,
+  kLostEvents,
+  kBadDefinition,
+  kUndefinedRegion,
+  kUndefinedName,
+  kUndefinedCommunicator,
+  kLeaveWithoutEnter,
+  kUnclosedProcess,
+  kMissingRank,
+  kDuplicateRank,
+  kUnmatchedSend,
+  kUnmatchedReceive,
+  kIncompleteCollective,
+  kClockUnknown,
+  kClockUnsynchronised,
+};
+
+/// Name and sentence of a Defect; the sentence follows a count.
+struct DefectEntry {
+  Defect defect;
+  std::string_view name;
+  std::string_view one;   // "event was lost"
+  std::string_view many;  // "events were lost"
+};
+const DefectEntry& EntryOf(Defect defect);
+
+/// `count` defects of one kind in one place.
+struct Problem {
+  Defect defect;
+  std::string where;  // stream file, rank or process; empty: the archive
+  std::uint64_t count = 1;
+};
+
+/// "node7.4711.stream: 3 events were lost"
+std::string TextOf(const Problem& problem);
+
+class TraceHealth {
+ public:
+  /// Adds to what is known of this defect in this place; a count of 0 changes nothing.
+  void Add(Defect defect, std::string_view where, std::uint64_t count = 1);
+  void Add(const TraceHealth& other);
+
+  std::uint64_t CountOf(Defect defect) const;
+  /// Events that happened and cannot be read.
+  std::uint64_t LostEvents() const;
+  bool Sound() const { return problems_.empty(); }
+  const std::vector<Problem>& problems() const { return problems_; }
+
+ private:
+  std::vector<Problem> problems_;
+};
+
+}  // namespace stipple
+
+#endif

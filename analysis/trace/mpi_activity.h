@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+// Everything that the ranks did with MPI: calls, messages, collectives, probes. Read in one scan
+// and kept, because matching needs both ends; its size follows the number of MPI events, not of
+// function events.
+//
+// Messages are matched by MPI's own rule that they do not overtake each other: on one communicator,
+// from one sender to one receiver with one tag, the k-th send belongs to the k-th receive in the
+// order in which the receives were *posted*. Completion order is another one: of two posted
+// receives with different tags the second may complete first, and with wildcards sender and tag are
+// known only at completion, but the order of posts still decides.
+#ifndef STIPPLE_ANALYSIS_TRACE_MPI_ACTIVITY_H
+#define STIPPLE_ANALYSIS_TRACE_MPI_ACTIVITY_H
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "analysis/trace/health.h"
+#include "analysis/trace/trace.h"
+
+namespace stipple {
+
+inline constexpr std::uint32_t kNoIndex = std::numeric_limits<std::uint32_t>::max();
+
+/// An outermost visit of an MPI function.
+struct MpiCall {
+  std::int64_t begin_ns = 0;
+  std::int64_t end_ns = 0;
+  std::uint32_t region = 0;
+  std::uint32_t location = 0;
+};
+
+/// One direction of a channel on which messages keep their order.
+struct Channel {
+  std::uint32_t communicator = 0;
+  std::int32_t sender = 0;  // world ranks
+  std::int32_t receiver = 0;
+  std::int32_t tag = 0;
+  auto operator<=>(const Channel&) const = default;
+};
+
+struct SendEvent {
+  Channel channel;
+  std::uint64_t bytes = 0;
+  std::int64_t enter_ns = 0;          // the sending call was entered
+  std::uint32_t order = 0;            // among the posts of the location
+  std::uint32_t request = 0;          // 0: blocking
+  std::uint32_t call = kNoIndex;      // where it was posted
+  std::uint32_t end_call = kNoIndex;  // where it was complete; blocking: the same
+  std::uint32_t receive = kNoIndex;   // its match
+};
+
+struct ReceiveEvent {
+  Channel channel;
+  std::uint64_t bytes = 0;
+  std::int64_t post_ns = 0;
+  std::int64_t complete_ns = 0;
+  std::uint32_t order = 0;
+  std::uint32_t request = 0;
+  std::uint32_t end_call = kNoIndex;  // where it was complete
+  std::uint32_t send = kNoIndex;      // its match
+};
+
+struct ProbeEvent {
+  Channel channel;
+  std::int64_t time_ns = 0;
+  std::uint32_t call = kNoIndex;
+};
+
+struct CollectiveEvent {
+  std::uint32_t communicator = 0;
+  std::uint32_t number = 0;  // 0, 1, ... on the communicator: the same on all its ranks
+  std::int32_t rank = 0;     // world
+  std::int32_t root = -1;    // world; -1: none
+  std::uint32_t region = 0;
+  std::int64_t enter_ns = 0;
+  std::uint32_t order = 0;
+  std::uint32_t request = 0;
+  std::uint32_t end_call = kNoIndex;  // where it was complete; blocking: where it was entered
+};
+
+/// A moment that the program marked. No MPI, but it comes with the same scan.
+struct MarkEvent {
+  std::int64_t time_ns = 0;
+  std::uint32_t name = 0;
+  std::uint32_t location = 0;
+};
+
+struct MpiActivity {
+  std::vector<MpiCall> calls;          // by location, then time
+  std::vector<SendEvent> sends;        // by channel, then order of posts; cancelled ones are gone
+  std::vector<ReceiveEvent> receives;  // likewise
+  std::vector<ProbeEvent> probes;
+  std::vector<CollectiveEvent> collectives;  // by communicator, number, rank
+  std::vector<MarkEvent> marks;              // by location, then time
+  std::uint64_t matched = 0;
+  std::uint64_t reversed = 0;  // messages that were complete before their send was entered
+  std::uint64_t bytes = 0;     // sent
+  TraceHealth health;          // what is not matched or not defined
+
+  std::uint64_t Unmatched() const {
+    return health.CountOf(Defect::kUnmatchedSend) + health.CountOf(Defect::kUnmatchedReceive);
+  }
+};
+
+/// Scans all locations. Messages count for MPI ranks only, calls for any location.
+MpiActivity ReadMpiActivity(const Trace& trace);
+
+/// Pairs sends and receives in place; both are sorted by channel and order of posts.
+void MatchMessages(std::vector<SendEvent>& sends, std::vector<ReceiveEvent>& receives);
+
+}  // namespace stipple
+
+#endif

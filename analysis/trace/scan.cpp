@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#include "analysis/trace/scan.h"
+
+#include <algorithm>
+
+namespace stipple {
+namespace {
+
+/// Bytes of an event record of fixed size; 0: of a kind whose size varies or is not known.
+constexpr std::uint64_t BytesOf(RecordKind kind) {
+  switch (kind) {
+    case RecordKind::kMark:
+      return sizeof(Mark);
+    case RecordKind::kCounter:
+      return sizeof(Counter);
+    case RecordKind::kMpiSend:
+      return sizeof(MpiSend);
+    case RecordKind::kMpiReceivePost:
+      return sizeof(MpiReceivePost);
+    case RecordKind::kMpiReceive:
+      return sizeof(MpiReceive);
+    case RecordKind::kMpiRequestEnd:
+      return sizeof(MpiRequestEnd);
+    case RecordKind::kMpiCollective:
+      return sizeof(MpiCollective);
+    case RecordKind::kMpiProbe:
+      return sizeof(MpiProbe);
+    case RecordKind::kThreadEnd:
+      return sizeof(ThreadEnd);
+    case RecordKind::kTimeStamp:
+      return sizeof(TimeStamp);
+    default:
+      return 0;
+  }
+}
+
+}  // namespace
+
+std::uint64_t SoundRecordWords(const EventWord* word, const EventWord* end) {
+  const std::uint64_t words = WordsOf(*word);
+  const std::uint64_t expected = BytesOf(KindOf(*word));
+  if (words == 0) return 0;
+  if (expected != 0 && words * sizeof(EventWord) != expected) return 0;
+  return words <= static_cast<std::uint64_t>(end - word) ? words : 0;
+}
+
+UnclockedRun MeasureUnclocked(const EventWord* word, const EventWord* end, std::uint64_t now,
+                              std::uint64_t limit) {
+  UnclockedRun run;
+  std::uint64_t next = limit == kNoTickLimit ? now : std::max(now, limit);
+  for (; word < end; ++word) {
+    if (IsRecord(*word)) {
+      if (word + 1 < end && WordsOf(*word) > 1 && word[1] < limit) next = std::max(now, word[1]);
+      break;
+    }
+    if (TimeOf(*word) != 0) {
+      next = TicksAfter(now, TimeOf(*word), limit);
+      break;
+    }
+    if (*word != 0) ++run.events;
+  }
+  run.step = (next - now) / (run.events + 1);
+  return run;
+}
+
+const EventWord* WrittenEnd(const Chunk& chunk) {
+  const EventWord* end = chunk.end;
+  while (end != chunk.begin && end[-1] == 0) --end;
+  return end;
+}
+
+}  // namespace stipple

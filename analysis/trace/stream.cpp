@@ -1,0 +1,384 @@
+// SPDX-License-Identifier: MIT
+#include "analysis/trace/stream.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <map>
+
+namespace stipple {
+namespace {
+
+constexpr std::uint64_t kKnownFeatures = 0;
+
+// A damaged number must not make tables of millions of entries: numbers are given out one after
+// the other, so one far above the count of definitions is damage.
+constexpr std::uint32_t kNumberSlack = 1 << 16;
+
+std::string TextOf(const char* text, std::size_t size) { return {text, strnlen(text, size)}; }
+
+/// A definition chunk's record being read, with bounds.
+struct DefinitionReader {
+  Stream& stream;
+
+  template <class Record>
+  bool Get(std::span<const EventWord> words, Record& record) const {
+    if (words.size_bytes() < sizeof(Record)) return false;
+    std::memcpy(&record, words.data(), sizeof(Record));
+    return true;
+  }
+  /// The bytes behind the struct, or nothing when `bytes` is more than there are.
+  template <class Record>
+  std::optional<std::string_view> Text(std::span<const EventWord> words,
+                                       std::uint64_t bytes) const {
+    if (bytes > words.size_bytes() - sizeof(Record)) return std::nullopt;
+    return std::string_view(reinterpret_cast<const char*>(words.data()) + sizeof(Record), bytes);
+  }
+
+  bool Region(std::span<const EventWord> words) {
+    DefineRegion r;
+    if (!Get(words, r)) return false;
+    const auto text =
+        Text<DefineRegion>(words, std::uint64_t{r.name_bytes} + std::uint64_t{r.file_bytes});
+    if (!text || r.region == 0 || r.region > kMaxRegion ||
+        r.region > stream.regions.size() * 16 + kNumberSlack)
+      return false;
+    const auto kind =
+        static_cast<std::uint32_t>(r.region_kind) - 1 < 4 ? r.region_kind : RegionKind::kFunction;
+    stream.regions.push_back(
+        {r.region, kind, r.line, text->substr(0, r.name_bytes), text->substr(r.name_bytes)});
+    return true;
+  }
+
+  bool Location(std::span<const EventWord> words) {
+    DefineLocation d;
+    if (!Get(words, d)) return false;
+    const auto text = Text<DefineLocation>(words, d.name_bytes);
+    if (!text) return false;
+    for (ThreadStream& t : stream.threads)
+      if (t.thread == d.thread) t.name = *text;
+    return true;
+  }
+
+  bool Name(std::span<const EventWord> words) {
+    DefineName d;
+    if (!Get(words, d)) return false;
+    const auto text =
+        Text<DefineName>(words, std::uint64_t{d.name_bytes} + std::uint64_t{d.unit_bytes});
+    if (!text || d.name > stream.names.size() * 16 + kNumberSlack) return false;
+    stream.names.push_back({d.name, text->substr(0, d.name_bytes), text->substr(d.name_bytes)});
+    return true;
+  }
+
+  bool World(std::span<const EventWord> words) {
+    DefineWorld d;
+    if (!Get(words, d) || d.world_rank < 0 || d.world_rank >= d.world_size ||
+        d.world_size > (1 << 24))
+      return false;
+    stream.world = d;
+    return true;
+  }
+
+  bool Communicator(std::span<const EventWord> words) {
+    DefineCommunicator d;
+    if (!Get(words, d) || d.size < 0) return false;
+    const auto text =
+        Text<DefineCommunicator>(words, std::uint64_t{4} * static_cast<unsigned>(d.size));
+    if (!text || d.communicator > stream.communicators.size() * 16 + kNumberSlack) return false;
+    CommunicatorDefinition c{d.communicator, d.parent, d.creation, {}};
+    c.world_ranks.resize(static_cast<std::size_t>(d.size));
+    std::memcpy(c.world_ranks.data(), text->data(), text->size());
+    stream.communicators.push_back(std::move(c));
+    return true;
+  }
+
+  bool Sync(std::span<const EventWord> words) {
+    ClockSync d;
+    if (!Get(words, d)) return false;
+    stream.syncs.push_back(d);
+    return true;
+  }
+
+  bool Lost(std::span<const EventWord> words) {
+    Loss d;
+    if (!Get(words, d)) return false;
+    stream.lost = std::max(stream.lost, d.events);
+    return true;
+  }
+
+  bool End(std::span<const EventWord> words) {
+    ProcessEnd d;
+    if (!Get(words, d)) return false;
+    stream.end = d;
+    stream.lost = std::max(stream.lost, d.lost);
+    stream.clock_pairs.push_back({d.ticks, d.raw_ns});
+    return true;
+  }
+
+  bool Visits(std::span<const EventWord> words) {
+    VisitCounts d;
+    if (!Get(words, d) || d.entries > words.size()) return false;
+    const auto text = Text<VisitCounts>(words, d.entries * 16);
+    if (!text) return false;
+    for (std::uint64_t i = 0; i < d.entries; ++i) {
+      std::uint32_t region = 0;
+      std::uint64_t visits = 0;
+      std::memcpy(&region, text->data() + i * 16, 4);
+      std::memcpy(&visits, text->data() + i * 16 + 8, 8);
+      stream.visit_counts.emplace_back(region, visits);
+    }
+    return true;
+  }
+
+  bool Available(std::span<const EventWord> words) {
+    Availability d;
+    if (!Get(words, d)) return false;
+    const auto text = Text<Availability>(words, d.what_bytes);
+    if (!text) return false;
+    stream.availability.push_back({*text, d.available == 1, d.error});
+    return true;
+  }
+
+  bool Command(std::span<const EventWord> words) {
+    CommandLine d;
+    if (!Get(words, d)) return false;
+    const auto text = Text<CommandLine>(words, d.text_bytes);
+    if (!text) return false;
+    stream.command_line = *text;
+    return true;
+  }
+
+  bool Host(std::span<const EventWord>) { return stream.is_host = true; }
+
+  bool Read(std::span<const EventWord> words) {
+    switch (KindOf(words.front())) {
+      case RecordKind::kDefineRegion:
+        return Region(words);
+      case RecordKind::kDefineLocation:
+        return Location(words);
+      case RecordKind::kDefineName:
+        return Name(words);
+      case RecordKind::kDefineWorld:
+        return World(words);
+      case RecordKind::kDefineCommunicator:
+        return Communicator(words);
+      case RecordKind::kDefineHost:
+        return Host(words);
+      case RecordKind::kClockSync:
+        return Sync(words);
+      case RecordKind::kLoss:
+        return Lost(words);
+      case RecordKind::kProcessEnd:
+        return End(words);
+      case RecordKind::kVisitCounts:
+        return Visits(words);
+      case RecordKind::kAvailability:
+        return Available(words);
+      case RecordKind::kCommandLine:
+        return Command(words);
+      default:
+        return true;  // of a newer writer, which says so if it matters
+    }
+  }
+};
+
+/// Definitions of one chunk. A zero word is a definition that was never written, or the end.
+void ReadDefinitions(const Chunk& chunk, Stream& stream) {
+  DefinitionReader reader{stream};
+  const EventWord* last = chunk.end;
+  while (last != chunk.begin && last[-1] == 0) --last;
+  for (const EventWord* w = chunk.begin; w < last;) {
+    const EventWord word = *w;
+    if (word == 0) {  // reserved, never committed
+      ++w;
+      continue;
+    }
+    const std::uint64_t words = IsRecord(word) ? WordsOf(word) : 0;
+    if (words == 0 || words > static_cast<std::uint64_t>(chunk.end - w)) {
+      stream.health.Add(Defect::kBadRecord, stream.file_name);
+      return;
+    }
+    if (!IsClosed(word)) {
+      stream.health.Add(Defect::kOpenRecord, stream.file_name);
+    } else if (!reader.Read({w, words})) {
+      stream.health.Add(Defect::kBadDefinition, stream.file_name);
+    }
+    w += words;
+  }
+}
+
+struct FoundChunks {
+  std::map<std::uint32_t, ThreadStream> threads;
+  std::vector<Chunk> definitions;
+};
+
+/// Bytes of the chunk at `offset`: fewer than its header says where another chunk begins inside it.
+std::uint32_t SoundBytes(std::span<const std::byte> file, std::size_t offset, std::uint32_t bytes) {
+  for (std::uint32_t at = kGranuleBytes; at < bytes; at += kGranuleBytes) {
+    std::uint64_t magic = 0;
+    if (offset + at + sizeof(magic) > file.size()) break;
+    std::memcpy(&magic, file.data() + offset + at, sizeof(magic));
+    if (magic == kChunkMagic) return at;
+  }
+  return bytes;
+}
+
+/// The chunk whose header is `h`, cut where the file ends.
+Chunk ChunkAt(std::span<const std::byte> file, std::size_t offset, const ChunkHeader& h) {
+  const std::size_t end = std::min<std::size_t>(file.size(), offset + h.bytes);
+  const auto* begin =
+      reinterpret_cast<const EventWord*>(file.data() + offset + sizeof(ChunkHeader));
+  return {begin,      begin + (end - offset - sizeof(ChunkHeader)) / sizeof(EventWord),
+          h.sequence, h.ticks,
+          h.raw_ns,   h.lost};
+}
+
+/// Walks the granules. One that is no chunk's begin is skipped; a whole one of zeros was never
+/// used.
+FoundChunks FindChunks(Stream& stream) {
+  const std::span<const std::byte> file = stream.file.bytes();
+  FoundChunks found;
+  for (std::size_t offset = kGranuleBytes; offset + sizeof(ChunkHeader) <= file.size();) {
+    ChunkHeader h;
+    std::memcpy(&h, file.data() + offset, sizeof(h));
+    const bool valid = h.magic == kChunkMagic && h.bytes != 0 && h.bytes % kGranuleBytes == 0 &&
+                       (h.kind == ChunkKind::kEvents || h.kind == ChunkKind::kDefinitions);
+    if (!valid) {
+      if (h.magic != 0) stream.health.Add(Defect::kBadChunk, stream.file_name);
+      offset += kGranuleBytes;
+      continue;
+    }
+    if (const std::uint32_t bytes = SoundBytes(file, offset, h.bytes); bytes != h.bytes) {
+      stream.health.Add(Defect::kBadChunk, stream.file_name);
+      h.bytes = bytes;
+    }
+    const Chunk chunk = ChunkAt(file, offset, h);
+    if (offset + h.bytes > file.size()) stream.health.Add(Defect::kTruncatedFile, stream.file_name);
+    stream.clock_pairs.push_back({h.ticks, h.raw_ns});
+    if (h.kind == ChunkKind::kDefinitions) {
+      found.definitions.push_back(chunk);
+    } else {
+      ThreadStream& t = found.threads[h.thread];
+      t.thread = h.thread;
+      t.tid = h.tid;
+      t.chunks.push_back(chunk);
+    }
+    offset += h.bytes;
+  }
+  return found;
+}
+
+/// Sequence numbers are 0, 1, ...: what is not there was lost, what is there twice is damage.
+void OrderChunks(std::vector<Chunk>& chunks, Stream& stream) {
+  std::ranges::stable_sort(chunks, {}, &Chunk::sequence);
+  const auto twice = std::ranges::unique(chunks, {}, &Chunk::sequence);
+  stream.health.Add(Defect::kBadChunk, stream.file_name, twice.size());
+  chunks.erase(twice.begin(), twice.end());
+  std::uint64_t expected = 0;
+  for (const Chunk& c : chunks) {
+    const std::uint64_t missing = c.sequence - expected;
+    // A damaged number is one chunk out of place, not millions that are missing.
+    if (missing != 0)
+      stream.health.Add(Defect::kMissingChunk, stream.file_name, missing < (1 << 20) ? missing : 1);
+    expected = c.sequence + 1;
+  }
+}
+
+/// Chunks of a thread begin one after the other. The one that does not fit between its neighbours
+/// gets the time of the one before.
+void MendTimes(std::vector<Chunk>& chunks, Stream& stream) {
+  for (std::size_t i = 0; i + 1 < chunks.size(); ++i) {
+    if (chunks[i].ticks <= chunks[i + 1].ticks) continue;
+    const std::uint64_t before =
+        i == 0 ? std::min(stream.header.start_ticks, chunks[i + 1].ticks) : chunks[i - 1].ticks;
+    if (chunks[i + 1].ticks >= before) {
+      chunks[i].ticks = before;
+    } else {
+      chunks[i + 1].ticks = chunks[i].ticks;
+    }
+    stream.health.Add(Defect::kBadTime, stream.file_name);
+  }
+}
+
+bool ReadHeader(Stream& stream, TraceHealth& health) {
+  const std::span<const std::byte> file = stream.file.bytes();
+  if (file.size() < sizeof(FileHeader)) {
+    health.Add(Defect::kTruncatedFile, stream.file_name);
+    return false;
+  }
+  FileHeader& h = stream.header;
+  std::memcpy(&h, file.data(), sizeof(h));
+  // The chunks carry their own magic, so a damaged header does not keep them from being read.
+  if (h.magic != kFileMagic) stream.health.Add(Defect::kBadFileHeader, stream.file_name);
+  if (h.magic == kFileMagic &&
+      (h.minimum_reader_version > kFormatVersion || (h.features & ~kKnownFeatures) != 0)) {
+    health.Add(Defect::kUnreadableFile, stream.file_name + " (needs a newer stipple)");
+    return false;
+  }
+  stream.boot_id = TextOf(h.boot_id, sizeof(h.boot_id));
+  stream.host_name = TextOf(h.host_name, sizeof(h.host_name));
+  stream.program = TextOf(h.program, sizeof(h.program));
+  stream.settings = TextOf(h.settings, sizeof(h.settings));
+  stream.clock_pairs.push_back({h.start_ticks, h.start_raw_ns});
+  return true;
+}
+
+}  // namespace
+
+std::optional<MappedFile> MappedFile::Open(const std::string& path) {
+  const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (fd < 0) return std::nullopt;
+  struct stat status = {};
+  if (fstat(fd, &status) != 0 || !S_ISREG(status.st_mode)) {
+    close(fd);
+    return std::nullopt;
+  }
+  const auto bytes = static_cast<std::size_t>(status.st_size);
+  void* data = bytes == 0 ? nullptr : mmap(nullptr, bytes, PROT_READ, MAP_SHARED, fd, 0);
+  close(fd);
+  if (data == MAP_FAILED) return std::nullopt;
+  if (data != nullptr) madvise(data, bytes, MADV_SEQUENTIAL);
+  return MappedFile(static_cast<const std::byte*>(data), bytes);
+}
+
+MappedFile::MappedFile(MappedFile&& other) noexcept : data_(other.data_), bytes_(other.bytes_) {
+  other.data_ = nullptr;
+  other.bytes_ = 0;
+}
+
+MappedFile::~MappedFile() {
+  if (data_ != nullptr) munmap(const_cast<std::byte*>(data_), bytes_);
+}
+
+std::unique_ptr<Stream> ReadStream(const std::string& path, TraceHealth& health) {
+  const std::string file_name = std::filesystem::path(path).filename();
+  std::optional<MappedFile> file = MappedFile::Open(path);
+  if (!file) {
+    health.Add(Defect::kUnreadableFile, file_name);
+    return nullptr;
+  }
+  auto stream = std::make_unique<Stream>(std::move(*file));
+  stream->file_name = file_name;
+  if (!ReadHeader(*stream, health)) return nullptr;
+  FoundChunks found = FindChunks(*stream);
+  std::uint64_t lost = 0;  // as the chunks tell it, when the process could not say so itself
+  for (auto& [number, thread] : found.threads) {
+    OrderChunks(thread.chunks, *stream);
+    MendTimes(thread.chunks, *stream);
+    lost += thread.chunks.back().lost < (std::uint64_t{1} << 48) ? thread.chunks.back().lost : 0;
+    stream->threads.push_back(std::move(thread));
+  }
+  OrderChunks(found.definitions, *stream);
+  for (const Chunk& chunk : found.definitions) ReadDefinitions(chunk, *stream);
+  stream->lost = std::max(stream->lost, lost);
+  stream->health.Add(Defect::kLostEvents, file_name, stream->lost);
+  if (!stream->end) stream->health.Add(Defect::kUnclosedProcess, file_name);
+  return stream;
+}
+
+}  // namespace stipple

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+// One stream file: what one process recorded. Maps the file read-only and finds its chunks and
+// definitions; any bytes are safe. Events stay in the mapping and are read by scan.h.
+#ifndef STIPPLE_ANALYSIS_TRACE_STREAM_H
+#define STIPPLE_ANALYSIS_TRACE_STREAM_H
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "analysis/trace/health.h"
+#include "stipple/format.h"
+
+namespace stipple {
+
+/// A file in memory, read-only.
+class MappedFile {
+ public:
+  /// Empty when the file cannot be opened or mapped.
+  static std::optional<MappedFile> Open(const std::string& path);
+  MappedFile(MappedFile&& other) noexcept;
+  MappedFile& operator=(MappedFile&&) = delete;
+  ~MappedFile();
+
+  std::span<const std::byte> bytes() const { return {data_, bytes_}; }
+
+ private:
+  MappedFile(const std::byte* data, std::size_t bytes) : data_(data), bytes_(bytes) {}
+  const std::byte* data_;
+  std::size_t bytes_;
+};
+
+/// The words of one chunk, and what its header says.
+struct Chunk {
+  const EventWord* begin = nullptr;
+  const EventWord* end = nullptr;
+  std::uint64_t sequence = 0;
+  std::uint64_t ticks = 0;
+  std::uint64_t raw_ns = 0;
+  std::uint64_t lost = 0;
+};
+
+/// Event chunks of one thread, in order.
+struct ThreadStream {
+  std::uint32_t thread = 0;
+  std::uint32_t tid = 0;
+  std::string name;
+  std::vector<Chunk> chunks;
+};
+
+/// Definitions as the process wrote them, with its own numbers; text lies in the mapping.
+struct RegionDefinition {
+  std::uint32_t region = 0;
+  RegionKind kind = RegionKind::kFunction;
+  std::uint32_t line = 0;
+  std::string_view linkage_name;
+  std::string_view file;
+};
+struct NameDefinition {
+  std::uint32_t name = 0;
+  std::string_view text;
+  std::string_view unit;
+};
+struct CommunicatorDefinition {
+  std::uint32_t communicator = 0;
+  std::uint32_t parent = 0;
+  std::uint32_t creation = 0;
+  std::vector<std::int32_t> world_ranks;
+};
+struct AvailabilityDefinition {
+  std::string_view what;
+  bool available = false;
+  std::int32_t error = 0;
+};
+
+/// Ticks and CLOCK_MONOTONIC_RAW that were read together.
+struct ClockPair {
+  std::uint64_t ticks = 0;
+  std::uint64_t raw_ns = 0;
+};
+
+/// One process's stream.
+struct Stream {
+  explicit Stream(MappedFile mapped) : file(std::move(mapped)) {}
+
+  MappedFile file;
+  std::string file_name;
+  FileHeader header = {};
+  std::string boot_id, host_name, program, settings, command_line;
+  std::vector<ThreadStream> threads;  // by thread index
+
+  std::vector<RegionDefinition> regions;
+  std::vector<NameDefinition> names;
+  std::vector<CommunicatorDefinition> communicators;
+  std::vector<ClockSync> syncs;
+  std::vector<AvailabilityDefinition> availability;
+  std::vector<std::pair<std::uint32_t, std::uint64_t>> visit_counts;
+  std::optional<DefineWorld> world;
+  std::optional<ProcessEnd> end;
+  bool is_host = false;
+  std::uint64_t lost = 0;  // events that the process could not record
+  std::vector<ClockPair> clock_pairs;
+
+  TraceHealth health;
+};
+
+/// Reads headers and definitions. Null when the file cannot be read or needs a newer reader, with
+/// the reason in `health`.
+std::unique_ptr<Stream> ReadStream(const std::string& path, TraceHealth& health);
+
+}  // namespace stipple
+
+#endif

@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: MIT
+#include "analysis/trace/trace.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <tuple>
+#include <unordered_map>
+
+#include "analysis/trace/demangle.h"
+#include "analysis/trace/input_error.h"
+#include "analysis/trace/ranks.h"
+
+namespace stipple {
+namespace {
+
+constexpr std::uint64_t kBatchWords = 4096;
+
+/// Sees nothing: for counting.
+struct NullVisitor {
+  void Function(std::uint32_t, bool, std::uint64_t) {}
+  void Record(const EventWord*, std::uint64_t) {}
+};
+
+/// Keeps the first and the last time.
+struct EdgeVisitor {
+  std::uint64_t first = 0;
+  std::uint64_t last = 0;
+  bool any = false;
+  void See(std::uint64_t ticks) {
+    if (!any) first = ticks;
+    any = true;
+    last = ticks;
+  }
+  void Function(std::uint32_t, bool, std::uint64_t ticks) { See(ticks); }
+  void Record(const EventWord*, std::uint64_t ticks) { See(ticks); }
+};
+
+/// Times of a thread's first and last event, read from its outer chunks only; false: no event.
+bool FindEdges(const ThreadStream& thread, std::uint32_t region_count, Location& location) {
+  EdgeVisitor edge;
+  ScanCounts counts;
+  ScanPosition at;
+  while (!edge.any && ScanSome(thread, region_count, 1, at, counts, edge)) {
+  }
+  if (!edge.any) return false;
+  location.first_ticks = edge.first;
+  for (std::size_t c = thread.chunks.size(); c-- > 0;) {
+    EdgeVisitor tail;
+    at = ScanPosition{};
+    at.chunk = c;
+    ScanSome(thread, region_count, kNoTickLimit, at, counts, tail);
+    if (!tail.any) continue;
+    location.last_ticks = std::max(tail.last, location.first_ticks);
+    break;
+  }
+  return true;
+}
+
+std::int64_t Rounded(double ns) {
+  constexpr double kMost = 9.2e18;
+  return std::llround(std::clamp(ns, -kMost, kMost));
+}
+
+void Assign(std::vector<std::uint32_t>& map, std::uint32_t local, std::uint32_t global) {
+  if (local >= map.size()) map.resize(local + 1, 0);
+  map[local] = global;
+}
+
+/// Gives the same number to the same key.
+template <class Key>
+class Unifier {
+ public:
+  std::pair<std::uint32_t, bool> NumberOf(const Key& key) {
+    const auto [it, is_new] = numbers_.try_emplace(key, next_);
+    if (is_new) ++next_;
+    return {it->second, is_new};
+  }
+
+ private:
+  std::map<Key, std::uint32_t> numbers_;
+  std::uint32_t next_ = 1;
+};
+
+using RegionKey = std::tuple<std::string, std::string, std::uint32_t, RegionKind>;
+using NameKey = std::pair<std::string, std::string>;
+using CommunicatorKey = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::int32_t>;
+
+void UnifyRegions(std::vector<Process>& processes, std::vector<Region>& regions) {
+  regions.push_back({"(undefined region)", "", 0, RegionKind::kFunction});
+  Unifier<RegionKey> unifier;
+  std::unordered_map<std::string_view, std::string> demangled;
+  for (Process& p : processes) {
+    p.regions.assign(1, 0);
+    for (const RegionDefinition& d : p.stream->regions) {
+      auto [name, is_new_name] = demangled.try_emplace(d.linkage_name);
+      if (is_new_name) name->second = Demangle(d.linkage_name);
+      const auto [number, is_new] =
+          unifier.NumberOf({name->second, std::string(d.file), d.line, d.kind});
+      if (is_new) regions.push_back({name->second, std::string(d.file), d.line, d.kind});
+      Assign(p.regions, d.region, number);
+    }
+  }
+}
+
+void UnifyNames(std::vector<Process>& processes, std::vector<Name>& names) {
+  names.push_back({"(undefined name)", ""});
+  Unifier<NameKey> unifier;
+  for (Process& p : processes) {
+    for (const NameDefinition& d : p.stream->names) {
+      const auto [number, is_new] = unifier.NumberOf({std::string(d.text), std::string(d.unit)});
+      if (is_new) names.push_back({std::string(d.text), std::string(d.unit)});
+      Assign(p.names, d.name, number);
+    }
+  }
+}
+
+void UnifyCommunicators(std::vector<Process>& processes, std::vector<Communicator>& communicators) {
+  communicators.push_back({});
+  Unifier<CommunicatorKey> unifier;
+  for (Process& p : processes) {
+    if (!p.in_world) continue;
+    for (const CommunicatorDefinition& d : p.stream->communicators) {
+      // Those without a parent are told apart by their fixed number: 1 is the world, 2 is self.
+      const bool root = d.parent == 0;
+      const std::uint32_t parent = root ? d.communicator : p.CommunicatorOf(d.parent);
+      const std::int32_t first = d.world_ranks.empty() ? -1 : d.world_ranks.front();
+      const auto [number, is_new] =
+          unifier.NumberOf({root ? 0 : 1 + parent, root ? d.communicator : 0, d.creation, first});
+      if (is_new) communicators.push_back({d.world_ranks});
+      Assign(p.communicators, d.communicator, number);
+    }
+  }
+}
+
+}  // namespace
+
+void Trace::UnifyDefinitions() {
+  UnifyRegions(processes_, regions_);
+  UnifyNames(processes_, names_);
+  UnifyCommunicators(processes_, communicators_);
+}
+
+void Trace::PlaceLocations() {
+  double zero_ns = std::numeric_limits<double>::infinity();
+  for (std::size_t p = 0; p < processes_.size(); ++p) {
+    for (const ThreadStream& thread : processes_[p].stream->threads) {
+      Location l;
+      l.process_index = p;
+      l.stream = &thread;
+      l.rank = processes_[p].rank;
+      l.process = processes_[p].process;
+      l.thread = static_cast<int>(thread.thread & 0x7fffffff);
+      if (!FindEdges(thread, processes_[p].RegionCount(), l)) continue;
+      zero_ns = std::min(zero_ns, clocks_.maps[p].Ns(l.first_ticks));
+      locations_.push_back(l);
+    }
+  }
+  std::ranges::stable_sort(
+      locations_, {}, [](const Location& l) { return std::tuple(l.rank, l.process, l.thread); });
+  zero_ns_ = locations_.empty() ? 0 : zero_ns;
+  for (std::size_t i = 0; i < locations_.size(); ++i) {
+    Location& l = locations_[i];
+    l.index = i;
+    l.begin_ns = TimeNs(l, l.first_ticks);
+    l.end_ns = std::max(l.begin_ns, TimeNs(l, l.last_ticks));
+    span_ns_ = std::max(span_ns_, l.end_ns);
+  }
+  counts_.resize(locations_.size());
+}
+
+Trace Trace::Open(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  if (!fs::is_directory(path, error))
+    throw InputError(path, "is not an archive (no such directory)");
+  std::vector<std::string> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path, error))
+    if (entry.path().extension() == ".stream") files.push_back(entry.path());
+  if (error) throw InputError(path, error.message());
+  std::ranges::sort(files);
+  Trace trace;
+  trace.path_ = path;
+  for (const std::string& file : files)
+    if (std::unique_ptr<Stream> stream = ReadStream(file, trace.health_))
+      trace.streams_.push_back(std::move(stream));
+  if (trace.streams_.empty()) trace.health_.Add(Defect::kEmptyArchive, "");
+  for (const auto& stream : trace.streams_) trace.health_.Add(stream->health);
+  trace.clocks_ = CorrectClocks(trace.streams_, trace.health_);
+  trace.processes_ = NumberProcesses(trace.streams_, trace.health_);
+  trace.UnifyDefinitions();
+  trace.PlaceLocations();
+  std::vector<bool> seen;
+  for (const Process& p : trace.processes_) {
+    const int world = p.stream->world ? p.stream->world->world_size : 0;
+    trace.rank_count_ = std::max({trace.rank_count_, p.rank + 1, world});
+    seen.resize(std::max(seen.size(), static_cast<std::size_t>(trace.rank_count_)));
+    seen[static_cast<std::size_t>(p.rank)] = true;
+  }
+  trace.health_.Add(Defect::kMissingRank, "",
+                    static_cast<std::uint64_t>(std::ranges::count(seen, false)));
+  return trace;
+}
+
+const Location* Trace::MainOf(int rank) const {
+  for (const Location& l : locations_)
+    if (l.rank == rank && l.IsMain()) return &l;
+  return nullptr;
+}
+
+std::vector<int> Trace::RanksInOrder() const {
+  std::vector<int> ranks;
+  for (const Location& l : locations_)
+    if (l.IsMain()) ranks.push_back(l.rank);
+  std::ranges::stable_partition(ranks, [this](int rank) { return !IsHost(rank); });
+  return ranks;
+}
+
+bool Trace::IsHost(int rank) const {
+  return std::ranges::any_of(processes_,
+                             [rank](const Process& p) { return p.rank == rank && p.is_host; });
+}
+
+bool Trace::HasHost() const { return std::ranges::any_of(processes_, &Process::is_host); }
+
+std::string Trace::RankName(int rank) const { return IsHost(rank) ? "host" : std::to_string(rank); }
+
+std::string Trace::Program() const {
+  for (const Location& l : locations_)
+    if (const std::string& program = ProcessOf(l).stream->program; !program.empty())
+      return std::filesystem::path(program).filename();
+  return std::filesystem::path(path_).stem();
+}
+
+std::int64_t Trace::TimeNs(const Location& l, std::uint64_t ticks) const {
+  return Rounded(Map(l).Ns(ticks) - zero_ns_);
+}
+
+std::uint64_t Trace::TicksAt(const Location& l, std::int64_t time_ns) const {
+  return Map(l).Ticks(static_cast<double>(time_ns) + zero_ns_);
+}
+
+const ScanCounts& Trace::CountsOf(const Location& l) const {
+  if (!counts_[l.index]) {
+    NullVisitor visitor;
+    Scan(l, visitor);
+  }
+  return *counts_[l.index];
+}
+
+TraceHealth Trace::Health() const {
+  TraceHealth health = health_;
+  for (const Location& l : locations_) {
+    const ScanCounts& counts = CountsOf(l);
+    const std::string& where = ProcessOf(l).stream->file_name;
+    health.Add(Defect::kUncommitted, where, counts.uncommitted);
+    health.Add(Defect::kOpenRecord, where, counts.open_records);
+    health.Add(Defect::kBadRecord, where, counts.bad_records);
+    health.Add(Defect::kUndefinedRegion, where, counts.undefined_regions);
+  }
+  return health;
+}
+
+std::uint64_t Trace::EventCount() const {
+  std::uint64_t events = 0;
+  for (const Location& l : locations_) events += CountsOf(l).Events();
+  return events;
+}
+
+const Event* EventCursor::Next() {
+  struct Collector {
+    std::vector<Event>& events;
+    const std::vector<std::uint32_t>& regions;
+    void Function(std::uint32_t region, bool leave, std::uint64_t ticks) {
+      events.push_back({ticks, nullptr, regions[region], leave});
+    }
+    void Record(const EventWord* record, std::uint64_t ticks) {
+      events.push_back({ticks, record, 0, false});
+    }
+  };
+  while (next_ == batch_.size()) {
+    batch_.clear();
+    next_ = 0;
+    Collector collector{batch_, process_->regions};
+    if (!ScanSome(*location_->stream, process_->RegionCount(), kBatchWords, at_, counts_,
+                  collector))
+      return nullptr;
+  }
+  return &batch_[next_++];
+}
+
+}  // namespace stipple

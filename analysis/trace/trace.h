@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+// An archive, ready to be asked: definitions unified over all processes, locations in order, one
+// common time. Events are not held in memory; Scan and EventCursor read them from the mapping.
+#ifndef STIPPLE_ANALYSIS_TRACE_TRACE_H
+#define STIPPLE_ANALYSIS_TRACE_TRACE_H
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "analysis/trace/clock.h"
+#include "analysis/trace/health.h"
+#include "analysis/trace/scan.h"
+#include "analysis/trace/stream.h"
+#include "stipple/format.h"
+
+namespace stipple {
+
+/// A region of the archive; index 0 is the one of events whose region is not defined.
+struct Region {
+  std::string name;  // demangled
+  std::string file;
+  std::uint32_t line = 0;
+  RegionKind kind = RegionKind::kFunction;
+};
+
+/// Name and unit of a mark or counter; index 0 is the one that is not defined.
+struct Name {
+  std::string text;
+  std::string unit;
+};
+
+/// Index 0 is the one that is not defined.
+struct Communicator {
+  std::vector<std::int32_t> world_ranks;
+
+  /// -1: not a member.
+  std::int32_t WorldRank(std::int32_t rank) const {
+    const auto r = static_cast<std::size_t>(rank);
+    return rank >= 0 && r < world_ranks.size() ? world_ranks[r] : -1;
+  }
+};
+
+/// A process and what its numbers mean in the archive.
+struct Process {
+  const Stream* stream = nullptr;
+  int rank = 0;
+  int process = 0;        // within the rank: 0 is its own, 1.. are further ones (forked, started)
+  bool in_world = false;  // an MPI rank whose messages are matched
+  bool is_host = false;
+  std::vector<std::uint32_t> regions;        // of the process -> of the archive
+  std::vector<std::uint32_t> names;          // likewise
+  std::vector<std::uint32_t> communicators;  // likewise
+
+  std::uint32_t RegionCount() const { return static_cast<std::uint32_t>(regions.size()); }
+  std::uint32_t NameOf(std::uint32_t n) const { return n < names.size() ? names[n] : 0; }
+  std::uint32_t CommunicatorOf(std::uint32_t c) const {
+    return c < communicators.size() ? communicators[c] : 0;
+  }
+};
+
+/// A thread of a process.
+struct Location {
+  std::size_t index = 0;          // in Trace::locations
+  std::size_t process_index = 0;  // in Trace::processes
+  const ThreadStream* stream = nullptr;
+  int rank = 0;
+  int process = 0;
+  int thread = 0;
+  std::uint64_t first_ticks = 0;
+  std::uint64_t last_ticks = 0;
+  std::int64_t begin_ns = 0;
+  std::int64_t end_ns = 0;
+
+  /// Whose time the states of a rank divide.
+  bool IsMain() const { return process == 0 && thread == 0; }
+};
+
+class Trace {
+ public:
+  /// Throws InputError when `path` is no directory. Damage is no error: see Health.
+  static Trace Open(const std::string& path);
+
+  const std::string& path() const { return path_; }
+  const std::vector<Region>& regions() const { return regions_; }
+  const std::vector<Name>& names() const { return names_; }
+  const std::vector<Communicator>& communicators() const { return communicators_; }
+  const std::vector<Process>& processes() const { return processes_; }
+  const std::vector<Location>& locations() const { return locations_; }
+  const ClockReport& clock() const { return clocks_.report; }
+
+  const Process& ProcessOf(const Location& l) const { return processes_[l.process_index]; }
+  /// The main thread of a rank; null when it has no stream.
+  const Location* MainOf(int rank) const;
+  /// Ranks that have a main thread, ascending, but hosts last.
+  std::vector<int> RanksInOrder() const;
+  bool IsHost(int rank) const;
+  bool HasHost() const;
+  /// "3" or "host".
+  std::string RankName(int rank) const;
+  /// Ranks of the program, those without a stream included.
+  int RankCount() const { return rank_count_; }
+  /// File name of the traced program.
+  std::string Program() const;
+
+  /// Nanoseconds since the first event of the archive.
+  std::int64_t TimeNs(const Location& l, std::uint64_t ticks) const;
+  /// The ticks at which it is `time_ns`.
+  std::uint64_t TicksAt(const Location& l, std::int64_t time_ns) const;
+  /// Nanoseconds per tick.
+  double NsPerTick(const Location& l) const { return Map(l).MeanSlope(); }
+  std::int64_t SpanNs() const { return span_ns_; }
+
+  /// Calls the visitor for each event of a location; see ScanSome.
+  template <class Visitor>
+  void Scan(const Location& l, Visitor& visitor) const {
+    counts_[l.index] = ScanThread(*l.stream, ProcessOf(l).RegionCount(), visitor);
+  }
+  /// Of the last Scan; scans if there was none.
+  const ScanCounts& CountsOf(const Location& l) const;
+
+  /// What headers and definitions tell.
+  const TraceHealth& header_health() const { return health_; }
+  /// That, and what a scan of all events found.
+  TraceHealth Health() const;
+  std::uint64_t EventCount() const;
+
+ private:
+  const ClockMap& Map(const Location& l) const { return clocks_.maps[l.process_index]; }
+  void UnifyDefinitions();
+  void PlaceLocations();
+
+  std::string path_;
+  std::vector<std::unique_ptr<Stream>> streams_;
+  std::vector<Process> processes_;  // as streams_
+  std::vector<Location> locations_;
+  std::vector<Region> regions_;
+  std::vector<Name> names_;
+  std::vector<Communicator> communicators_;
+  Clocks clocks_;
+  double zero_ns_ = 0;
+  std::int64_t span_ns_ = 0;
+  int rank_count_ = 0;
+  TraceHealth health_;
+  mutable std::vector<std::optional<ScanCounts>> counts_;
+};
+
+/// One event, decoded.
+struct Event {
+  std::uint64_t ticks = 0;
+  const EventWord* record = nullptr;  // null: a function event
+  std::uint32_t region = 0;           // of the archive
+  bool leave = false;
+};
+
+/// Reads the events of one location one by one, in batches of the one decoder.
+class EventCursor {
+ public:
+  EventCursor(const Trace& trace, const Location& location)
+      : location_(&location), process_(&trace.ProcessOf(location)) {}
+  /// Null: no more.
+  const Event* Next();
+  const Location& location() const { return *location_; }
+
+ private:
+  const Location* location_;
+  const Process* process_;
+  ScanPosition at_;
+  ScanCounts counts_;
+  std::vector<Event> batch_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace stipple
+
+#endif

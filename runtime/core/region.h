@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// Names that got a number: regions, and the names of marks and counters. They outlive the objects
+// that brought them, and a fork: a child's stream defines them again under the same numbers.
+#ifndef STIPPLE_RUNTIME_CORE_REGION_H
+#define STIPPLE_RUNTIME_CORE_REGION_H
+
+#include <cstdint>
+
+#include "process.h"
+
+namespace stipple {
+
+/// Writes the definition of every region and name there is. The lock is held.
+void DefineAll(Process& process);
+
+/// Sets the id slots of every registered object to 0: no more events. The lock is held.
+void SilenceAll();
+
+/// The highest region id given out.
+std::uint32_t LastRegion();
+
+/// The id of a mark's or counter's name; 0 if it cannot be recorded. The lock is held.
+std::uint32_t NameId(Process& process, const char* name, const char* unit);
+
+}  // namespace stipple
+
+#endif

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#include "settings.h"
+
+#include <stdlib.h>
+
+#include "line.h"
+
+namespace stipple {
+namespace {
+
+constinit Settings settings{};
+constinit bool was_read = false;
+
+bool StartsWith(const char* text, const char* start) {
+  while (*start != '\0')
+    if (*text++ != *start++) return false;
+  return true;
+}
+
+/// The N of "sparse:N", a power of two from 1 to 4096; 0 if it is none.
+std::uint64_t SparseDistance(const char* text) {
+  if (!StartsWith(text, "sparse:")) return 0;
+  std::uint64_t distance = 0;
+  for (text += 7; *text >= '0' && *text <= '9' && distance <= 4096; ++text)
+    distance = distance * 10 + static_cast<std::uint64_t>(*text - '0');
+  const bool power_of_two = distance != 0 && (distance & (distance - 1)) == 0;
+  return *text == '\0' && power_of_two && distance <= 4096 ? distance : 0;
+}
+
+void ReadClockSetting() {
+  const char* clock = getenv("STIPPLE_CLOCK");
+  if (clock == nullptr || *clock == '\0') clock = "exact";
+  std::uint64_t distance = SparseDistance(clock);
+  if (distance == 0 && !(StartsWith(clock, "exact") && clock[5] == '\0')) {
+    Line<256> line;
+    line.Add("stipple: clock '").Add(clock).Add("' is unknown (exact, sparse:N); using exact\n");
+    line.Print();
+    clock = "exact";
+  }
+  if (distance == 0) distance = 1;
+  settings.clock_mask = (distance - 1) * 8;
+  Line<sizeof settings.text> text;
+  text.Add("clock=").Add(clock);
+  CopyBytes(settings.text, text.text(), text.length());
+}
+
+}  // namespace
+
+const Settings& ReadSettings() {
+  if (was_read) return settings;
+  const char* archive = getenv("STIPPLE_ARCHIVE");
+  if (archive != nullptr && *archive != '\0') {
+    // A copy: the program may change its environment.
+    const std::size_t bytes = TextBytes(archive) + 1;
+    char* copy = static_cast<char*>(MapMemory(bytes));
+    if (copy != nullptr) CopyBytes(copy, archive, bytes);
+    settings.archive = copy;
+    ReadClockSetting();
+  }
+  was_read = true;
+  return settings;
+}
+
+}  // namespace stipple

@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: MIT
+// The slow half of an event, and the events of the other libraries.
+//
+// A reservation is one unlocked xadd on the thread's own control block. Instrumented code does it
+// inline; here it is the same instruction, so a signal handler may come between any two steps and
+// record as well: it gets slots of its own. Only taking a chunk needs the signals blocked, and
+// after blocking them the reservation is tried again first, since a handler may have taken a chunk
+// meanwhile.
+#include "stream.h"
+
+#include <pthread.h>
+#include <sys/mman.h>
+
+#include "chunk.h"
+#include "clock.h"
+#include "process_end.h"
+#include "recorder.h"
+#include "region.h"
+#include "save_area.h"
+#include "settings.h"
+
+extern "C" {
+/// Reservations in it always fail: what a thread points at until its first event.
+constinit stipple_control stipple_no_stream{};
+/// What stipple_dso.tp_offset leads to; also read in slow.S.
+__thread stipple_control* stipple_stream = &stipple_no_stream;
+/// In the slow path: an event from within would be one of the runtime itself.
+static __thread bool stipple_inside = false;
+}
+
+namespace stipple {
+namespace {
+
+constexpr std::size_t kCountsBytes = (std::size_t{kMaxRegion} + 1) * sizeof(std::uint64_t);
+constexpr unsigned kInlineKeys = 32;  // glibc keeps these in the thread itself; others it allocates
+
+constinit bool prepared = false;
+constinit bool have_end_key = false;
+constinit pthread_key_t end_key{};
+
+/// Signals blocked and the thread marked as inside the runtime.
+class Inside {
+ public:
+  Inside() : again_(stipple_inside) { stipple_inside = true; }
+  ~Inside() { stipple_inside = again_; }
+  Inside(const Inside&) = delete;
+  Inside& operator=(const Inside&) = delete;
+  /// The runtime was entered from within itself.
+  bool again() const { return again_; }
+
+ private:
+  SignalBlock signals_blocked_;
+  bool again_;
+};
+
+/// The thread that this one's slot points at, or null; a forked child finds it zeroed.
+Thread* KnownThread() {
+  auto* thread = reinterpret_cast<Thread*>(stipple_stream);
+  if (stipple_stream == &stipple_no_stream || thread->tid == 0) return nullptr;
+  return thread;
+}
+
+Thread* SpareThread(Process& process) {
+  constexpr std::uint32_t kAtOnce = 128;
+  if (process.spare_count == 0) {
+    process.spare = static_cast<Thread*>(MapWipedMemory(kAtOnce * kThreadBytes));
+    if (process.spare == nullptr) return nullptr;
+    process.spare_count = kAtOnce;
+  }
+  --process.spare_count;
+  Thread* thread = process.spare;
+  process.spare = reinterpret_cast<Thread*>(reinterpret_cast<char*>(process.spare) + kThreadBytes);
+  return thread;
+}
+
+void DefineThisLocation(Process& process, const Thread& thread) {
+  constexpr long kGetName = 16;
+  char name[17] = {};
+  Syscall(SYS_prctl, kGetName, Argument(name));
+  DefineLocation record{};
+  record.thread = thread.index;
+  record.tid = thread.tid;
+  record.name_bytes = static_cast<std::uint32_t>(TextBytes(name));
+  Define(process, &record, DefineLocation::kKind, sizeof record, name, record.name_bytes);
+}
+
+/// Gives this thread a state of its own; null if it cannot record.
+Thread* NewThread() {
+  Process* process = BeginProcess();
+  if (process == nullptr) return nullptr;
+  Thread* thread = nullptr;
+  {
+    Holding holding(process->lock);
+    thread = SpareThread(*process);
+    if (thread == nullptr) return nullptr;
+    thread->tid = GetTid();
+    thread->index = thread->tid == process->first_tid ? 0 : ++process->last_thread;
+    thread->next_bytes = kGranuleBytes;
+    thread->control.clock_mask = ReadSettings().clock_mask;
+    thread->next = process->threads;
+    process->threads = thread;
+    DefineThisLocation(*process, *thread);
+  }
+  stipple_stream = &thread->control;
+  if (have_end_key) pthread_setspecific(end_key, thread);
+  return thread;
+}
+
+/// Takes `bytes` of the stream in one instruction; they are valid if they end at or before `end`.
+inline std::uint64_t Reserve(stipple_control& control, std::uint64_t bytes) {
+  std::uint64_t slot = bytes;
+  __asm__ volatile("xaddq %0, %1" : "+r"(slot), "+m"(control.cur) : : "memory", "cc");
+  return slot;
+}
+
+EventWord* WordAt(std::uint64_t address) { return reinterpret_cast<EventWord*>(address); }
+
+void Commit(EventWord* place, EventWord word) {
+  std::atomic_ref<EventWord>(*place).store(word, std::memory_order_release);
+}
+
+/// A record that did not fit leaves the chunk's last words zero for good.
+void NoteWaste(Thread& thread, std::uint64_t slot) {
+  const auto begin = reinterpret_cast<std::uint64_t>(thread.chunk);
+  if (slot > begin && slot < thread.chunk_end) thread.waste = slot;
+}
+
+/// Reserves on the slow path: begins the process's or thread's stream, takes a chunk. Null: lost.
+/// Signals are blocked.
+EventWord* ReserveSlowly(std::uint64_t bytes, std::uint64_t ticks) {
+  Thread* thread = KnownThread();
+  if (thread == nullptr) thread = NewThread();
+  if (thread == nullptr) return nullptr;
+  Process* process = ThisProcess();
+  thread->control.end = thread->chunk_end;
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    const std::uint64_t slot = Reserve(thread->control, bytes);
+    if (slot + bytes <= thread->chunk_end) return WordAt(slot);
+    NoteWaste(*thread, slot);
+    if (!NextChunk(*process, *thread, bytes, ticks)) break;
+  }
+  return nullptr;
+}
+
+/// A place for a record of `bytes`, or null and the loss is counted.
+EventWord* ReserveRecord(std::uint64_t bytes) {
+  stipple_control& control = *stipple_stream;
+  const std::uint64_t slot = Reserve(control, bytes);
+  if (slot + bytes <= control.end) [[likely]]
+    return WordAt(slot);
+  const std::uint64_t ticks = ReadTicks();
+  const Inside inside;
+  if (Thread* thread = KnownThread()) NoteWaste(*thread, slot);
+  EventWord* place = inside.again() ? nullptr : ReserveSlowly(bytes, ticks);
+  if (place == nullptr) CountLost(1);
+  return place;
+}
+
+void AppendRecord(const void* record, RecordKind kind, std::size_t bytes) {
+  EventWord* place = ReserveRecord(bytes);
+  if (place == nullptr) return;
+  Commit(place, MakeHeader(kind, bytes / 8, false));
+  CopyBytes(place + 1, static_cast<const EventWord*>(record) + 1, bytes - 8);
+  Commit(place, MakeHeader(kind, bytes / 8, true));
+}
+
+std::uint64_t AppendEvent(std::uint32_t region, bool leave) {
+  if (region == 0) return ReadTicks();
+  EventWord* place = ReserveRecord(sizeof(EventWord));
+  const std::uint64_t ticks = ReadTicks();
+  if (place != nullptr) Commit(place, MakeEvent(ticks, leave, RegionId{region}));
+  return ticks;
+}
+
+/// The last round of key destructors: what other keys' destructors do until then still belongs to
+/// the thread. Events after it still find the stream.
+void EndThread(void* pointer) {
+  auto* thread = static_cast<Thread*>(pointer);
+  if (stipple_stream != &thread->control) return;
+  if (++thread->end_rounds < PTHREAD_DESTRUCTOR_ITERATIONS) {
+    pthread_setspecific(end_key, thread);
+    return;
+  }
+  ThreadEnd record{};
+  record.ticks = ReadTicks();
+  AppendRecord(&record, ThreadEnd::kKind, sizeof record);
+  const SignalBlock signals_blocked;
+  Process* process = ThisProcess();
+  if (thread->tid == 0 || process == nullptr) return;
+  Holding holding(process->lock);
+  thread->ended = 1;
+  if (thread->chunk != nullptr)
+    Syscall(SYS_madvise, Argument(thread->chunk), static_cast<long>(thread->chunk_bytes),
+            MADV_DONTNEED);
+}
+
+/// The time, or that of the chunk's begin if a signal handler took the chunk since.
+std::uint64_t NotBeforeChunk(std::uint64_t ticks) {
+  const auto* thread = reinterpret_cast<const Thread*>(stipple_stream);
+  const std::uint64_t begin = reinterpret_cast<const ChunkHeader*>(thread->chunk)->ticks;
+  return ticks < begin ? begin : ticks;
+}
+
+/// One visit of a region that is counted only, by a thread that has no counts yet.
+bool CountVisit(std::uint32_t region) {
+  Thread* thread = KnownThread();
+  if (thread == nullptr) thread = NewThread();
+  if (thread == nullptr) return false;
+  if (thread->control.counts == nullptr)
+    thread->control.counts = static_cast<std::uint64_t*>(MapWipedMemory(kCountsBytes));
+  if (thread->control.counts == nullptr) return false;
+  ++thread->control.counts[region];
+  return true;
+}
+
+/// Counts of one thread as pairs; returns how many fitted from `region` on, and moves it.
+std::uint64_t GatherCounts(const std::uint64_t* counts, std::uint32_t& region,
+                           std::uint64_t (*pairs)[2], std::uint64_t most) {
+  std::uint64_t entries = 0;
+  for (; region <= LastRegion() && entries < most; ++region) {
+    if (counts[region] == 0) continue;
+    pairs[entries][0] = region;
+    pairs[entries++][1] = counts[region];
+  }
+  return entries;
+}
+
+}  // namespace
+
+void PrepareThreads() {
+  if (prepared) return;
+  prepared = true;
+  PrepareSaveArea();
+  PrepareEnd();
+  have_end_key = pthread_key_create(&end_key, EndThread) == 0 && end_key < kInlineKeys;
+}
+
+std::int64_t ControlSlotOffset() {
+  std::uint64_t thread_pointer = 0;
+  __asm__("movq %%fs:0, %0" : "=r"(thread_pointer));
+  return static_cast<std::int64_t>(reinterpret_cast<std::uint64_t>(&stipple_stream) -
+                                   thread_pointer);
+}
+
+void WriteVisitCounts(Process& process) {
+  if (process.said_counts != 0) return;
+  process.said_counts = 1;
+  for (const Thread* thread = process.threads; thread != nullptr; thread = thread->next) {
+    if (thread->control.counts == nullptr) continue;
+    std::uint32_t region = 1;
+    while (region <= LastRegion()) {
+      std::uint64_t pairs[32][2];
+      VisitCounts record{};
+      record.entries = GatherCounts(thread->control.counts, region, pairs, 32);
+      if (record.entries == 0) continue;
+      Define(process, &record, VisitCounts::kKind, sizeof record,
+             reinterpret_cast<const char*>(pairs), record.entries * sizeof pairs[0]);
+    }
+  }
+}
+
+void CountLost(std::uint64_t events) {
+  if (Thread* thread = KnownThread()) thread->lost += events;
+  Process* process = ThisProcess();
+  if (process != nullptr) process->lost.fetch_add(events, std::memory_order_relaxed);
+}
+
+}  // namespace stipple
+
+extern "C" {
+
+/// What slow.S calls with the token of an event; returns the token for the exits.
+std::uint32_t stipple_slow_event(std::uint32_t token) {
+  using namespace stipple;
+  const std::uint64_t arrived = ReadTicks();
+  const bool leave = (token & STIPPLE_LEAVE) != 0;
+  const std::uint32_t region = token & STIPPLE_REGION_MASK;
+  const Inside inside;
+  if (!inside.again()) {
+    if ((token & STIPPLE_COUNT_ONLY) != 0) {
+      if (!leave && !CountVisit(region)) CountLost(1);
+      return 0;
+    }
+    EventWord* place = ReserveSlowly(sizeof(EventWord), arrived);
+    if (place != nullptr) {
+      // What the runtime took here is outside of the visit.
+      const std::uint64_t ticks = leave ? NotBeforeChunk(arrived) : ReadTicks();
+      const bool timed = (token & STIPPLE_NO_CLOCK) == 0;
+      Commit(place, MakeEvent(timed ? ticks : 0, leave, RegionId{region}));
+      return token;
+    }
+  }
+  CountLost(1);
+  return 0;
+}
+
+uint64_t stipple_ticks() { return stipple::ReadTicks(); }
+
+uint64_t stipple_enter(uint32_t region) { return stipple::AppendEvent(region, false); }
+uint64_t stipple_leave(uint32_t region) { return stipple::AppendEvent(region, true); }
+
+void stipple_append(const void* record, uint8_t kind, size_t bytes) {
+  if (bytes < 8 || bytes % 8 != 0 || bytes / 8 > stipple::kMaxRecordWords) return;
+  stipple::AppendRecord(record, static_cast<stipple::RecordKind>(kind), bytes);
+}
+}

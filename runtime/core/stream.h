@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+// A thread's stream: where its next record goes.
+#ifndef STIPPLE_RUNTIME_CORE_STREAM_H
+#define STIPPLE_RUNTIME_CORE_STREAM_H
+
+#include <cstddef>
+#include <cstdint>
+
+#include "process.h"
+#include "stipple/abi.h"
+
+namespace stipple {
+
+/// One thread. Lies in memory that a forked child finds zeroed (tid 0: none of this process).
+struct Thread {
+  stipple_control control;  // first: the thread pointer's slot points at it
+  std::uint64_t chunk_end;  // what control.end is when nobody forces the slow path
+  char* chunk;
+  std::uint64_t chunk_bytes;
+  std::uint64_t next_bytes;
+  std::uint64_t sequence;
+  std::uint64_t lost;
+  std::uint64_t waste;     // words from here to the chunk's end are zero for good; 0: none
+  std::uint64_t seen_cur;  // at the watch's last round
+  Thread* next;
+  std::uint32_t tid;
+  std::uint32_t index;
+  std::uint32_t end_rounds;  // rounds of key destructors seen
+  std::uint32_t ended;
+};
+static_assert(sizeof(Thread) <= 128);
+inline constexpr std::size_t kThreadBytes = 128;  // own cache lines
+
+/// Makes this thread able to record: what must be done once per process before the first event.
+void PrepareThreads();
+
+/// The offset of the slot that holds the control block's address from the thread pointer.
+std::int64_t ControlSlotOffset();
+
+/// Writes the visits that `process`'s threads counted only. The lock is held.
+void WriteVisitCounts(Process& process);
+
+/// Counts events that could not be recorded.
+void CountLost(std::uint64_t events);
+
+}  // namespace stipple
+
+/// Where instrumented code jumps when its fast path does not fit (slow.S).
+extern "C" void stipple_slow();
+
+#endif

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#include "world.h"
+
+#include "call.h"
+#include "clock_sync.h"
+#include "communicator.h"
+#include "handle_table.h"
+
+namespace stipple::mpi {
+
+void BeginWorld(int result, int thread_level) {
+  if (result != MPI_SUCCESS || !KnownMpi()) return;
+  threads_may_race = thread_level == MPI_THREAD_MULTIPLE;
+  BeginCommunicators();
+  SynchroniseClocks();
+}
+
+void EndWorld() {
+  if (world.size != 0) SynchroniseClocks();
+}
+
+}  // namespace stipple::mpi

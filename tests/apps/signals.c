@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: MIT */
+/* Signals interrupt events anywhere; handlers are events too. What is counted must balance. */
+#include <signal.h>
+#include <stdio.h>
+#include <sys/time.h>
+
+static volatile sig_atomic_t ticks;
+
+__attribute__((noinline)) void Handler(int signal) { ticks += signal > 0; }
+__attribute__((noinline)) void Busy(int i) { __asm__ volatile("" : : "r"(i)); }
+__attribute__((noinline)) void Quiet(void) { puts("quiet"); }
+
+int main(void) {
+  struct sigaction action = {.sa_handler = Handler, .sa_flags = SA_RESTART};
+  sigaction(SIGALRM, &action, NULL);
+  struct itimerval every = {{0, 50}, {0, 50}};
+  setitimer(ITIMER_REAL, &every, NULL);
+  for (int i = 0; ticks < 1000; ++i) Busy(i);
+  every = (struct itimerval){{0, 0}, {0, 0}};
+  setitimer(ITIMER_REAL, &every, NULL);
+  Quiet();
+  return 0;
+}
