@@ -73,8 +73,9 @@ TEST(Svg, StandaloneFileHasItsOwnGround) {
 
 TEST(Report, SameInputGivesTheSameBytesWithoutADisplay) {
   unsetenv("DISPLAY");
-  for (const SampleEntry& sample : Samples())
-    EXPECT_EQ(ReportPage(sample.make()), ReportPage(sample.make())) << sample.name;
+  for (const int nodes : {1, 8, 40})
+    EXPECT_EQ(ReportPage(SampleReport(nodes, true)), ReportPage(SampleReport(nodes, true)))
+        << nodes;
 }
 
 TEST(Report, StaysBelowAMegabyteForAnyTrace) {
