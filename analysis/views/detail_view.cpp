@@ -54,22 +54,22 @@ std::vector<std::vector<EventMark>> MarksByRow(const Timeline& detail, const Row
 /// Lines arrive from the left and leave to the right: letters stand beside them.
 double Aside(char letter) { return letter == 'r' ? 3 : -2; }
 
-/// Letters where they stand alone, else how many there are; never nearer than kMarkSpacing.
+/// Letters where they stand alone, else how many there are; what a numeral would touch joins it.
 void AddMarks(Layer& layer, const std::vector<EventMark>& marks, double y) {
   for (std::size_t i = 0; i < marks.size();) {
     std::size_t count = 1;
-    const double first = marks[i].x;
-    while (i + count < marks.size() && marks[i + count].x - first < kMarkSpacing) ++count;
-    const std::string text =
-        count == 1 ? std::string(1, marks[i].letter) : FormatShort(static_cast<double>(count));
-    const double x =
-        count == 1 ? first + Aside(marks[i].letter) : (first + marks[i + count - 1].x) / 2;
+    double x = marks[i].x, reach = x + kMarkSpacing;
+    std::string text(1, marks[i].letter);
+    while (i + count < marks.size() && marks[i + count].x < reach) {
+      ++count;
+      text = FormatShort(static_cast<double>(count));
+      x = (marks[i].x + marks[i + count - 1].x) / 2;
+      reach = std::max(reach, x + TextWidth(text, kMarkSize, true) / 2 + kMarkSpacing);
+    }
+    if (count == 1) x += Aside(marks[i].letter);
     layer.shapes.emplace_back(TextShape{
         x, y, text, {.size = kMarkSize, .colour = kInk, .bold = true, .anchor = Anchor::kMiddle}});
     i += count;
-    // A numeral of two digits is wider than the spacing: what it would cover joins the next mark.
-    const double reach = x + TextWidth(text, kMarkSize, true) / 2 + 4;
-    while (count > 1 && i < marks.size() && marks[i].x < reach) ++i;
   }
 }
 

@@ -16,6 +16,10 @@ namespace {
 
 constexpr std::string_view kFontFamily = "Inter,'DejaVu Sans',system-ui,sans-serif";
 
+/// Half the height of capitals over the font size, in Inter as in DejaVu Sans. Baselines are placed
+/// by it because not every renderer knows `dominant-baseline`.
+constexpr double kMiddleOverBaseline = 0.364;
+
 /// How the device writes a line that shall not be seen.
 constexpr std::string_view kNoPenDashes = "0,10";
 
@@ -100,16 +104,18 @@ std::string TextElement(vtkXMLDataElement* element) {
   const std::string_view transform = Attribute(element, "transform");
   const std::vector<double> place = Numbers(transform);  // translate(x,y)rotate(a)
   std::string text = "<text";
+  // The device calls its pixels points.
+  const std::vector<double> sizes = Numbers(Attribute(element, "font-size"));
+  const double size = sizes.empty() ? 12 : sizes[0], drop = size * kMiddleOverBaseline;
   if (place.size() >= 3)
-    text += fmt::format(" transform=\"translate({},{})rotate(-90)\"", Decimal(Hundredths(place[0])),
-                        Decimal(Hundredths(place[1])));
+    text += fmt::format(" transform=\"translate({},{})rotate(-90)\" y=\"{}\"",
+                        Decimal(Hundredths(place[0])), Decimal(Hundredths(place[1])),
+                        Decimal(Hundredths(drop)));
   else if (place.size() == 2)
     text += fmt::format(" x=\"{}\" y=\"{}\"", Decimal(Hundredths(place[0])),
-                        Decimal(Hundredths(place[1])));
+                        Decimal(Hundredths(place[1] + drop)));
   text += AttributeText("fill", Attribute(element, "fill"));
-  // The device calls its pixels points.
-  const std::vector<double> size = Numbers(Attribute(element, "font-size"));
-  if (!size.empty()) text += AttributeText("font-size", Decimal(Hundredths(size[0])));
+  text += AttributeText("font-size", Decimal(Hundredths(size)));
   if (Attribute(element, "font-weight") == "bold") text += " font-weight=\"600\"";
   if (anchor == "right" || anchor == "end") text += " text-anchor=\"end\"";
   if (anchor == "middle" || anchor == "center") text += " text-anchor=\"middle\"";
@@ -211,7 +217,7 @@ std::string WriteSvg(const Scene& scene, vtkXMLDataElement* root, const SvgOptio
                         scene.width, scene.height);
   text += fmt::format(
       " class=\"view-{0}\" viewBox=\"0 0 {1} {2}\" role=\"img\" aria-labelledby=\"{0}-title "
-      "{0}-description\" fill=\"none\" font-family=\"{3}\" dominant-baseline=\"central\">\n",
+      "{0}-description\" fill=\"none\" font-family=\"{3}\">\n",
       scene.name, scene.width, scene.height, kFontFamily);
   text +=
       fmt::format("<title id=\"{0}-title\">{1}</title><desc id=\"{0}-description\">{2}</desc>\n",

@@ -17,8 +17,9 @@ namespace stipple {
 std::string EscapeMarkup(std::string_view text);
 
 /// Repairs the device's elements below `root` and writes them as one <svg>:
-/// outlines nobody asked for are dropped, anchors and baselines get SVG's names, sizes are pixels,
-/// the font family is the page's, and neighbours that differ only in their outline become one path.
+/// outlines nobody asked for are dropped, anchors get SVG's names, baselines numbers, sizes are
+/// pixels, the font family is the page's, and neighbours that differ only in their outline become
+/// one path.
 std::string WriteSvg(const Scene& scene, vtkXMLDataElement* root, const SvgOptions& options);
 
 }  // namespace stipple

@@ -33,9 +33,9 @@ TEST(Svg, RightAlignedTextEndsAtItsAnchor) {
   const std::string svg = DrawSvg(
       SceneWith(TextShape{60, 20, "node 0", {.size = 13, .colour = kInk, .anchor = Anchor::kEnd}}));
   EXPECT_TRUE(Contains(
-      svg, R"(<text x="60" y="20" fill="#1f2933" font-size="13" text-anchor="end">node 0</text>)"))
+      svg,
+      R"(<text x="60" y="24.73" fill="#1f2933" font-size="13" text-anchor="end">node 0</text>)"))
       << svg;
-  EXPECT_TRUE(Contains(svg, R"(dominant-baseline="central")"));
 }
 
 TEST(Svg, TextIsEscapedAndStaysText) {
@@ -73,8 +73,9 @@ TEST(Svg, StandaloneFileHasItsOwnGround) {
 
 TEST(Report, SameInputGivesTheSameBytesWithoutADisplay) {
   unsetenv("DISPLAY");
-  for (const SampleEntry& sample : Samples())
-    EXPECT_EQ(ReportPage(sample.make()), ReportPage(sample.make())) << sample.name;
+  for (const int nodes : {1, 8, 40})
+    EXPECT_EQ(ReportPage(SampleReport(nodes, true)), ReportPage(SampleReport(nodes, true)))
+        << nodes;
 }
 
 TEST(Report, StaysBelowAMegabyteForAnyTrace) {
