@@ -94,6 +94,10 @@ constexpr std::size_t kMostWaits = 6;  // the last one may be "others"
 
 std::vector<WaitedFor> LargestWaits(const Finding& finding) {
   std::vector<WaitedFor> waits = finding.waited_for;
+  if (waits.empty()) return waits;
+  // What would be written as 0 is left out.
+  const double least = waits.front().seconds / 1000;
+  std::erase_if(waits, [&](const WaitedFor& wait) { return wait.seconds < least; });
   if (waits.size() <= kMostWaits) return waits;
   WaitedFor others{-1, "others", 0, {}};
   for (std::size_t i = kMostWaits - 1; i < waits.size(); ++i) others.seconds += waits[i].seconds;

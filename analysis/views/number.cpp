@@ -77,6 +77,7 @@ std::string FormatShort(double number) {
     const double scaled = number / unit.size;
     return fmt::format("{:.{}f}{}", scaled, scaled < 9.95 ? 1 : 0, unit.name);
   }
+  if (number > 0 && number < 0.05) return "<0.1";
   const bool whole = number == std::floor(number);
   return fmt::format("{:.{}f}", number, whole || number >= 9.95 ? 0 : 1);
 }

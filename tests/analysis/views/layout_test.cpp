@@ -204,6 +204,7 @@ TEST(Numbers, HaveTwoOrThreeDigitsAndAUnit) {
   EXPECT_EQ(FormatPercent(0.001), "<1%");
   EXPECT_EQ(FormatPercent(0.997), "99.7%");
   EXPECT_EQ(FormatShort(1234), "1.2k");
+  EXPECT_EQ(FormatShort(0.01), "<0.1");
   EXPECT_EQ(FormatSpan(11.55, 13.15), "11.55\u201313.15 s");
 }
 
