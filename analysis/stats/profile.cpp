@@ -41,22 +41,29 @@ class ProfileVisitor {
     void Function(std::uint32_t region, bool leave, std::uint64_t ticks) {
       const std::uint64_t now = ticks < begin ? begin : ticks > end ? end : ticks;
       RegionTicks* const r = regions + region;
+      const std::uint64_t leaves = leave ? 1 : 0;
       top->region->exclusive += now - last;
       last = now;
-      if (!leave) {
-        r->calls += now == ticks;
-        ++r->open;
-        if (top == limit) [[unlikely]] {
-          top = owner->Grow();
-          limit = owner->Limit();
-        }
-        *++top = {r, now};
-      } else if (top->region == r) [[likely]] {
-        Pop(now);
-      } else if (r->open != 0) {
-        while (top->region != r) Pop(now);
-        Pop(now);
+      if ((leaves & static_cast<std::uint64_t>(top->region != r)) != 0) [[unlikely]]
+        return Unbalanced(r, now);
+      if (top == limit) [[unlikely]] {
+        top = owner->Grow();
+        limit = owner->Limit();
       }
+      // Enter or leave is as good as random, and a wrong guess costs more than all of this: so both
+      // are done without a branch.
+      r->calls += (leaves ^ 1) & static_cast<std::uint64_t>(now == ticks);
+      r->open += 1 - 2 * leaves;
+      const std::uint64_t outermost = leaves & static_cast<std::uint64_t>(r->open == 0);
+      r->inclusive += (now - top->enter) & (0 - outermost);
+      top[1] = {r, now};
+      top += 1 - 2 * static_cast<std::ptrdiff_t>(leaves);
+    }
+    /// A leave of a region that is not on top: frames above it were left without an event.
+    void Unbalanced(const RegionTicks* r, std::uint64_t now) {
+      if (r->open == 0) return;
+      while (top->region != r) Pop(now);
+      Pop(now);
     }
     void Record(const EventWord*, std::uint64_t) {}
 
