@@ -65,15 +65,24 @@ EventWord* FirstWord(char* chunk) {
   return reinterpret_cast<EventWord*>(chunk + sizeof(ChunkHeader));
 }
 
-/// Takes `bytes` of the file; null if recording has stopped, now or before.
-char* TakeChunk(Process& process, std::size_t bytes, std::uint64_t* offset) {
+/// Takes `bytes` of the file, mapped; null if recording has stopped, now or before.
+char* TakeChunk(Process& process, std::size_t bytes) {
   Holding holding(process.lock);
   if (process.state.load(std::memory_order_relaxed) != State::kRecording) return nullptr;
   int error = 0;
-  *offset = process.file.used;
   char* place = TakeBytes(process.file, bytes, &error);
   if (place == nullptr) StopProcess(process, error);
   return place;
+}
+
+/// Takes a place for a copied window; false if recording has stopped, now or before.
+bool TakeCopyPlace(Process& process, std::uint64_t* offset) {
+  Holding holding(process.lock);
+  if (process.state.load(std::memory_order_relaxed) != State::kRecording) return false;
+  int error = 0;
+  const bool taken = TakePlace(process.file, kWindowBytes, offset, &error);
+  if (!taken) StopProcess(process, error);
+  return taken;
 }
 
 /// Whether the thread's chunk can be copied away and used again.
@@ -89,7 +98,7 @@ bool CanReuse(const Thread& thread, std::size_t bytes) {
 /// Copies the thread's window to its place in the file and clears it; false if that failed.
 bool MoveWindowOn(Process& process, Thread& thread) {
   std::uint64_t offset = 0;
-  if (TakeChunk(process, kWindowBytes, &offset) == nullptr) return false;
+  if (!TakeCopyPlace(process, &offset)) return false;
   const int error = WriteBytes(process.file, offset, thread.chunk, kWindowBytes);
   if (error != 0) {
     Holding holding(process.lock);
@@ -113,8 +122,7 @@ bool TakeFreshChunk(Process& process, Thread& thread, std::size_t bytes) {
   const std::uint64_t least = sizeof(ChunkHeader) + bytes;
   if (chunk_bytes < least)
     chunk_bytes = (least + kGranuleBytes - 1) / kGranuleBytes * kGranuleBytes;
-  std::uint64_t offset = 0;
-  char* place = TakeChunk(process, chunk_bytes, &offset);
+  char* place = TakeChunk(process, chunk_bytes);
   if (place == nullptr) return false;
   if (thread.chunk != nullptr)
     Syscall(SYS_madvise, Argument(thread.chunk), static_cast<long>(thread.chunk_bytes),

@@ -87,7 +87,7 @@ int Allocate(int descriptor, std::uint64_t from, std::uint64_t to) {
   return error;
 }
 
-/// Grows the file so that `bytes` more can be taken, and maps from `used` on.
+/// Grows the file so that `bytes` more can be taken; 0 or an errno.
 int Grow(StreamFile& file, std::uint64_t bytes) {
   const int descriptor = Descriptor(file);
   if (descriptor < 0) return -descriptor;
@@ -98,12 +98,21 @@ int Grow(StreamFile& file, std::uint64_t bytes) {
   if (error != 0 && end != least) error = Allocate(descriptor, file.allocated, end = least);
   if (error != 0) return error;
   file.allocated = end;
+  if (file.next_extent_bytes < kLargestExtentBytes) file.next_extent_bytes *= 2;
+  return 0;
+}
+
+/// Maps all that is allocated and not yet taken; 0 or an errno.
+int MapWindow(StreamFile& file) {
+  const int descriptor = Descriptor(file);
+  if (descriptor < 0) return -descriptor;
   const long window =
-      Syscall(SYS_mmap, 0, static_cast<long>(end - file.used), PROT_READ | PROT_WRITE, MAP_SHARED,
-              descriptor, static_cast<long>(file.used));
+      Syscall(SYS_mmap, 0, static_cast<long>(file.allocated - file.used), PROT_READ | PROT_WRITE,
+              MAP_SHARED, descriptor, static_cast<long>(file.used));
   if (IsError(window)) return static_cast<int>(-window);
   file.window = reinterpret_cast<char*>(window);
-  if (file.next_extent_bytes < kLargestExtentBytes) file.next_extent_bytes *= 2;
+  file.window_begin = file.used;
+  file.window_end = file.allocated;
   return 0;
 }
 
@@ -142,13 +151,19 @@ int CreateFile(StreamFile& file, const char* archive, const char* host_name, std
   return EEXIST;
 }
 
+bool TakePlace(StreamFile& file, std::size_t bytes, std::uint64_t* offset, int* error) {
+  *error = file.used + bytes > file.allocated ? Grow(file, bytes) : 0;
+  if (*error != 0) return false;
+  *offset = file.used;
+  file.used += bytes;
+  return true;
+}
+
 char* TakeBytes(StreamFile& file, std::size_t bytes, int* error) {
-  if (file.used + bytes > file.allocated) {
-    *error = Grow(file, bytes);
-    if (*error != 0) return nullptr;
-  }
-  char* taken = file.window;
-  file.window += bytes;
+  *error = file.used + bytes > file.allocated ? Grow(file, bytes) : 0;
+  if (*error == 0 && file.used + bytes > file.window_end) *error = MapWindow(file);
+  if (*error != 0) return nullptr;
+  char* taken = file.window + (file.used - file.window_begin);
   file.used += bytes;
   return taken;
 }

@@ -19,9 +19,11 @@ struct StreamFile {
   std::uint64_t inode;   // descriptor and the number be given to another file
   std::uint64_t used;    // bytes handed out
   std::uint64_t allocated;
-  char* window;  // where byte `used` is mapped
+  char* window;  // where the file is mapped from window_begin to window_end
+  std::uint64_t window_begin;
+  std::uint64_t window_end;
   std::uint64_t next_extent_bytes;
-  bool closing;      // no more extents ahead of need
+  bool closing;  // no more extents ahead of need
   Line<kPathBytes> path;
 };
 
@@ -32,6 +34,9 @@ int CreateFile(StreamFile& file, const char* archive, const char* host_name, std
 /// Takes the next `bytes` (a multiple of kGranuleBytes) of the file, mapped and zero; null and an
 /// errno in `error` when the file cannot grow. The lock is held.
 char* TakeBytes(StreamFile& file, std::size_t bytes, int* error);
+
+/// The same without a mapping: false and an errno when the file cannot grow.
+bool TakePlace(StreamFile& file, std::size_t bytes, std::uint64_t* offset, int* error);
 
 /// Writes into bytes taken before, at `offset`; 0 or an errno.
 int WriteBytes(StreamFile& file, std::uint64_t offset, const char* from, std::size_t bytes);

@@ -7,7 +7,6 @@
 #include "arena.h"
 #include "recorder.h"
 #include "settings.h"
-#include "stipple/user.h"
 #include "stream.h"
 
 namespace stipple {

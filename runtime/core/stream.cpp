@@ -148,6 +148,7 @@ EventWord* ReserveRecord(std::uint64_t bytes) {
   const std::uint64_t slot = Reserve(control, bytes);
   if (slot + bytes <= control.end) [[likely]]
     return WordAt(slot);
+  if (ReadSettings().archive == nullptr) return nullptr;
   const std::uint64_t ticks = ReadTicks();
   const Inside inside;
   if (Thread* thread = KnownThread()) NoteWaste(*thread, slot);
@@ -176,7 +177,8 @@ std::uint64_t AppendEvent(std::uint32_t region, bool leave) {
 /// the thread. Events after it still find the stream.
 void EndThread(void* pointer) {
   auto* thread = static_cast<Thread*>(pointer);
-  if (stipple_stream != &thread->control) return;
+  // Zeroed: a forked child's, which has not recorded.
+  if (stipple_stream != &thread->control || thread->tid == 0) return;
   if (++thread->end_rounds < PTHREAD_DESTRUCTOR_ITERATIONS) {
     pthread_setspecific(end_key, thread);
     return;

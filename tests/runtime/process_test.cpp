@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Begin, fork and every end of a process; disks that are full or not to be written.
 #include <gtest/gtest.h>
-#include <sys/mman.h>
 #include <sys/mount.h>
-#include <sys/stat.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <cstdlib>
 
 #include "run_writer.h"

@@ -4,6 +4,7 @@
 #ifndef STIPPLE_TESTS_RUNTIME_WALKER_H
 #define STIPPLE_TESTS_RUNTIME_WALKER_H
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <fstream>

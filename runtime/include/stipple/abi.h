@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* clang-format off: the code below is laid out by hand */
 /* ABI 1: what instrumented code and the runtime know of each other. C and C++.
  *
  * The plugin gives each instrumented function a `stipple_descriptor` in section `stipple_desc` of
@@ -11,17 +12,20 @@
  * The code of an event, enter (leave: the same, without the load of the slot, and with bit 23 set
  * in the word):
  *
- *     token = descriptor.id              // enter hands it to every exit of the same visit, in a
- * register if (token == 0) done               // off, filtered or not registered if (token & mode
- * bits) slow control = *(thread pointer + dso.tp_offset) slot = xadd(control.cur, 8)        // one
- * instruction: a signal may come before or after, not between if (slot >= control.end) slow time =
- * (slot & control.clock_mask) == 0 ? rdtsc << 24 : 0 *slot = time | token               // not
- * zero: this is the commit
+ *     token = descriptor.id                    enter hands it to every exit of the same visit
+ *     if (token == 0) done                     off, filtered or not registered
+ *     if (token & mode bits) slow
+ *     control = *(thread pointer + dso.tp_offset)
+ *     slot = xadd(control.cur, 8)              one instruction: no signal handler comes between
+ *     if (slot >= control.end) slow
+ *     time = (slot & control.clock_mask) == 0 ? rdtsc << 24 : 0
+ *     *slot = time | token                     not zero: this is the commit
  *
  * `slow` is a jump, not a call, so that neither red zone nor unwind tables of the function need to
  * know of it: eax = token (leave: token | STIPPLE_LEAVE), r11 = address to come back to; it comes
  * back with eax = the token for the exits (enter) and every other register as it was, but for rdx,
  * r11 and the flags. */
+/* clang-format on */
 #ifndef STIPPLE_ABI_H
 #define STIPPLE_ABI_H
 
@@ -30,8 +34,7 @@
 /* The id slot: region in the low 23 bits (0: no events), mode in the high byte. */
 #define STIPPLE_REGION_MASK 0x007fffff
 #define STIPPLE_LEAVE 0x00800000      /* in an event word and in eax of `slow`, never in a slot */
-#define STIPPLE_COUNT_ONLY 0x01000000 /* count the visit, write no event; the exit gets token 0 \
-                                        */
+#define STIPPLE_COUNT_ONLY 0x01000000 /* count the visit, write no event; the exit's token is 0 */
 #define STIPPLE_NO_CLOCK 0x02000000   /* write the event without reading the clock */
 #define STIPPLE_MODE_MASK 0xff000000  /* any of these: the slow path */
 
