@@ -109,10 +109,10 @@ class Visit {
   Visit(const Visit&) = delete;
   Visit& operator=(const Visit&) = delete;
 
-  bool recorded() const { return region_ != 0; }
-  uint32_t region() const { return region_; }
+  bool Recorded() const { return region_ != 0; }
+  uint32_t Region() const { return region_; }
   /// Full ticks of the enter event.
-  std::uint64_t enter_ticks() const { return enter_ticks_; }
+  std::uint64_t EnterTicks() const { return enter_ticks_; }
 
   void Leave() noexcept {
     stipple_leave(region_);

@@ -147,12 +147,12 @@ void RecordCollective(const Visit& visit, const Communicator& on, const Traffic&
     root = PeerOf(on, traffic.root);
   }
   Append(MpiCollective{.header = 0,
-                       .ticks = visit.enter_ticks(),
+                       .ticks = visit.EnterTicks(),
                        .bytes_sent = traffic.sent,
                        .bytes_received = traffic.received,
                        .communicator = on.id,
                        .root = root,
-                       .region = visit.region(),
+                       .region = visit.Region(),
                        .request = request});
 }
 

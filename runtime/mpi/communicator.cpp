@@ -42,9 +42,9 @@ uint32_t HashedCreation(std::uint64_t hash, uint32_t parent) {
 /// World ranks of `group`'s members, written to `members`.
 void Translate(MPI_Group group, int size, int32_t* members) {
   Scratch<int, 256> own(static_cast<std::size_t>(size));
-  if (own.data() == nullptr) return;
+  if (own.Data() == nullptr) return;
   for (int i = 0; i < size; ++i) own[static_cast<std::size_t>(i)] = i;
-  STIPPLE_REAL(Group_translate_ranks)(group, size, own.data(), world_group, members);
+  STIPPLE_REAL(Group_translate_ranks)(group, size, own.Data(), world_group, members);
   for (int i = 0; i < size; ++i) {
     if (members[i] == MPI_UNDEFINED) members[i] = -1;
   }
@@ -113,8 +113,8 @@ Communicator Define(MPI_Comm comm, uint32_t id, Origin origin) {
   STIPPLE_REAL(Comm_rank)(comm, &known.rank);
   const int size = groups.local_size + groups.remote_size;
   Scratch<int32_t, 256> members(static_cast<std::size_t>(size));
-  if (members.data() != nullptr) {
-    Translate(groups.local, groups.local_size, members.data());
+  if (members.Data() != nullptr) {
+    Translate(groups.local, groups.local_size, members.Data());
     if (between) {
       int32_t remote_first = -1;
       const int first = 0;
@@ -122,11 +122,11 @@ Communicator Define(MPI_Comm comm, uint32_t id, Origin origin) {
       const bool local_first = members[0] >= 0 && (remote_first < 0 || members[0] < remote_first);
       known.own_offset = local_first ? 0 : groups.remote_size;
       known.peer_offset = local_first ? groups.local_size : 0;
-      Translate(groups.local, groups.local_size, members.data() + known.own_offset);
-      Translate(groups.remote, groups.remote_size, members.data() + known.peer_offset);
+      Translate(groups.local, groups.local_size, members.Data() + known.own_offset);
+      Translate(groups.remote, groups.remote_size, members.Data() + known.peer_offset);
       origin = {.parent = kWorldId, .creation = 0, .hashed = true, .tag = 0};
     }
-    Write(id, origin, members.data(), size);
+    Write(id, origin, members.Data(), size);
   }
   FreeGroups(groups);
   communicators.Put(KeyOf(comm), known);

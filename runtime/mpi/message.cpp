@@ -133,7 +133,7 @@ void RecordSend(const Visit& visit, int count, MPI_Datatype datatype, int dest, 
                 MPI_Comm comm) {
   const Communicator on = Find(comm);
   if (!IsPeer(on, dest)) return;
-  AppendSend(visit.enter_ticks(), SendTo(on, count, datatype, dest, tag), 0);
+  AppendSend(visit.EnterTicks(), SendTo(on, count, datatype, dest, tag), 0);
 }
 
 void RecordReceive(int result, MPI_Comm comm, const MPI_Status& status) {
@@ -158,14 +158,14 @@ Request PostSend(const Visit& visit, int count, MPI_Datatype datatype, int dest,
   if (!IsPeer(on, dest)) return {};
   Request send = SendTo(on, count, datatype, dest, tag);
   send.number = NextRequestNumber();
-  AppendSend(visit.enter_ticks(), send, send.number);
+  AppendSend(visit.EnterTicks(), send, send.number);
   return send;
 }
 
 Request PostReceive(const Visit& visit, int source, MPI_Comm comm) {
   if (source == MPI_PROC_NULL) return {};
   const Request receive = ReceiveOn(Find(comm), NextRequestNumber());
-  AppendPost(visit.enter_ticks(), receive);
+  AppendPost(visit.EnterTicks(), receive);
   return receive;
 }
 
@@ -215,9 +215,9 @@ void RecordStart(const Visit& visit, int count, const MPI_Request* handles) {
     });
     if (!known) continue;
     if (request.kind == RequestKind::kSend) {
-      AppendSend(visit.enter_ticks(), request, request.number);
+      AppendSend(visit.EnterTicks(), request, request.number);
     } else {
-      AppendPost(visit.enter_ticks(), request);
+      AppendPost(visit.EnterTicks(), request);
     }
   }
 }
@@ -255,7 +255,7 @@ Completion::Completion(int count, const MPI_Request* handles) noexcept
       handles_(count_),
       known_(threads_may_race ? count_ : 0),
       statuses_(count_) {
-  if (handles_.data() == nullptr || known_.data() == nullptr) count_ = 0;
+  if (handles_.Data() == nullptr || known_.Data() == nullptr) count_ = 0;
   for (std::size_t i = 0; i < count_; ++i) handles_[i] = handles[i];
   if (!threads_may_race) return;
   for (std::size_t i = 0; i < count_; ++i) {
@@ -265,7 +265,7 @@ Completion::Completion(int count, const MPI_Request* handles) noexcept
 
 MPI_Status* Completion::Statuses(MPI_Status* given) {
   if (given != MPI_STATUSES_IGNORE) return given;
-  return count_ == 0 ? MPI_STATUSES_IGNORE : statuses_.data();
+  return count_ == 0 ? MPI_STATUSES_IGNORE : statuses_.Data();
 }
 
 bool Completion::Lookup(int index, Request* request) {

@@ -25,7 +25,7 @@ inline void GivePages(void* pages, std::size_t bytes) {
 }
 
 /// An array that lives on the stack up to kInline elements and in pages of its own beyond. Not
-/// initialised. data() is null if there was no memory.
+/// initialised. Data() is null if there was no memory.
 template <class T, std::size_t kInline>
 class Scratch {
  public:
@@ -41,7 +41,7 @@ class Scratch {
   Scratch(const Scratch&) = delete;
   Scratch& operator=(const Scratch&) = delete;
 
-  T* data() { return data_; }
+  T* Data() { return data_; }
   T& operator[](std::size_t index) { return data_[index]; }
 
  private:

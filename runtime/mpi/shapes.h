@@ -26,7 +26,7 @@
     if (real == nullptr) [[unlikely]]                            \
       return MPI_ERR_OTHER;                                      \
     Visit visit(CallIndex::k##name);                             \
-    if (!visit.recorded()) return real arguments;                \
+    if (!visit.Recorded()) return real arguments;                \
     before;                                                      \
     const int returned = real arguments;                         \
     after;                                                       \
@@ -49,7 +49,7 @@
     before;                                                      \
     const int returned = real arguments;                         \
     after;                                                       \
-    if (visit.recorded()) visit.Leave();                         \
+    if (visit.Recorded()) visit.Leave();                         \
     return returned;                                             \
   }                                                              \
   STIPPLE_ALIAS(name)

@@ -24,7 +24,7 @@ extern "C" STIPPLE_EXPORT int PMPI_Pcontrol(const int level, ...) {
     return MPI_ERR_OTHER;
   Visit visit(CallIndex::kPcontrol);
   const int result = real(level);
-  if (visit.recorded()) visit.Leave();
+  if (visit.Recorded()) visit.Leave();
   return result;
 }
 STIPPLE_ALIAS(Pcontrol)
