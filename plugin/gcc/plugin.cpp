@@ -27,7 +27,7 @@ void AddObjectCode() {
   std::string code(ObjectCode());
   if (ix86_asm_dialect == ASM_INTEL)
     code = "\t.att_syntax prefix\n" + code + "\t.intel_syntax noprefix\n";
-  symtab->finalize_toplevel_asm(build_string(code.size(), code.c_str()));
+  symtab->finalize_toplevel_asm(build_string(unsigned(code.size()), code.c_str()));
 }
 
 const pass_data kPassData = {

@@ -17,9 +17,10 @@ constexpr TemplateSyntax kSyntax = {
     .unique = "%=",
 };
 
+tree Text(std::string_view text) { return build_string(unsigned(text.size()), text.data()); }
+
 tree Operand(const char* constraint, tree value) {
-  return build_tree_list(build_tree_list(NULL_TREE, build_string(strlen(constraint), constraint)),
-                         value);
+  return build_tree_list(build_tree_list(NULL_TREE, Text(constraint)), value);
 }
 
 // `in` and `out` share a register if both are given.
@@ -29,7 +30,7 @@ gimple* Statement(const std::string& code, tree out, tree in, bool clobbers_regi
   if (in != NULL_TREE) vec_safe_push(inputs, Operand(out == NULL_TREE ? "r" : "0", in));
   if (clobbers_registers) {
     for (const char* name : {"rax", "rdx", "r11", "cc"})
-      vec_safe_push(clobbers, build_tree_list(NULL_TREE, build_string(strlen(name), name)));
+      vec_safe_push(clobbers, build_tree_list(NULL_TREE, Text(name)));
   }
   gasm* statement =
       gimple_build_asm_vec(ggc_strdup(code.c_str()), inputs, outputs, clobbers, nullptr);

@@ -80,6 +80,20 @@ case $check in
     compile "$apps/recursion.c" app exclude-file-list=recursion
     [[ $(readelf -S app) != *stipple_desc* ]] || fail "the file is instrumented"
     ;;
+  attributes) # what the source says of a function; clang passes on only what annotate() says
+    if [[ $compiler == gcc ]]; then
+      never='no_instrument_function' always='xray_always_instrument'
+    else
+      never='annotate("no_instrument_function")' always='annotate("xray_always_instrument")'
+    fi
+    sed "s/^__attribute__((noinline)) void Sink/__attribute__((noinline, $always)) void Sink/
+         s/^__attribute__((noinline)) int Fib/__attribute__((noinline, $never)) int Fib/" \
+      "$apps/recursion.c" >attributes.c
+    more=-Werror=attributes compile attributes.c app || fail "attributes are not known"
+    record "" ./app 20
+    expect "enter Sink 10945" counts
+    grep -q Fib counts && fail "Fib is instrumented"
+    ;;
   static) # the runtime is not pulled in by its weak name; -u does it
     more="-static -g" compile "$apps/recursion.c" app instruction-threshold=1
     [[ $(./app 20) == 6765 ]] || fail "static program does not run"

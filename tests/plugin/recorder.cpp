@@ -172,7 +172,7 @@ extern "C" __attribute__((visibility("hidden"))) uint32_t recorder_slow(uint32_t
   }
   const uint64_t time = (token & STIPPLE_NO_CLOCK) != 0 ? 0 : __builtin_ia32_rdtsc() << 24;
   Write(thread, time | (token & (STIPPLE_REGION_MASK | STIPPLE_LEAVE)));
-  return token & ~STIPPLE_LEAVE;
+  return token & ~uint32_t{STIPPLE_LEAVE};
 }
 
 extern "C" void stipple_slow(void);

@@ -48,7 +48,7 @@ extern "C" __attribute__((used)) std::uint32_t bench_slow(std::uint32_t token) {
   ring_control.clock_mask = clock_mask;
   *reinterpret_cast<std::uint64_t*>(ring_control.cur) = (__rdtsc() << 24) | token;
   ring_control.cur += 8;
-  return token & ~STIPPLE_LEAVE;
+  return token & ~std::uint32_t{STIPPLE_LEAVE};
 }
 
 extern "C" void bench_slow_entry();
