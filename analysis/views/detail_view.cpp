@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+// A short period: states, each message as a line from its send to its receive, `s` and `r` where
+// they happened, and numerals where marks would overlap.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/views/layout.h"
+#include "analysis/views/number.h"
+#include "analysis/views/palette.h"
+#include "analysis/views/state_runs.h"
+#include "analysis/views/text.h"
+#include "analysis/views/view_list.h"
+
+namespace stipple {
+namespace {
+
+constexpr std::size_t kMostLines = 400;  // beyond that lines hide the states
+constexpr double kMarkSize = 11;
+constexpr double kMarkSpacing = 12;  // marks nearer than this become one numeral
+constexpr double kLeastPitchForMarks = 24;
+constexpr double kTop = 18;
+
+RowGridLimits DetailLimits(std::size_t rows) {
+  RowGridLimits limits{
+      .top = kTop, .max_pitch = 36, .max_height = 430, .fill = 0.56, .max_rows = 160};
+  if (limits.max_height / static_cast<double>(std::max<std::size_t>(rows, 1)) < kLeastPitchForMarks)
+    limits.fill = 0.74;  // no room is kept for marks
+  return limits;
+}
+
+struct EventMark {
+  double x;
+  char letter;  // 's' or 'r'
+};
+
+/// Marks per drawn row, in the order of time.
+std::vector<std::vector<EventMark>> MarksByRow(const Timeline& detail, const RowGrid& grid,
+                                               const TimeAxis& axis) {
+  std::vector<std::vector<EventMark>> marks(grid.rows.size());
+  const auto add = [&](std::size_t row, double time_s, char letter) {
+    if (time_s < detail.begin_s || time_s > detail.end_s) return;
+    marks[grid.RowOf(row)].push_back({axis.XOf(time_s), letter});
+  };
+  for (const TimelineMessage& message : detail.messages) {
+    add(message.sender_row, message.send_s, 's');
+    add(message.receiver_row, message.receive_s, 'r');
+  }
+  for (std::vector<EventMark>& of_row : marks) std::ranges::stable_sort(of_row, {}, &EventMark::x);
+  return marks;
+}
+
+/// Lines arrive from the left and leave to the right: letters stand beside them.
+double Aside(char letter) { return letter == 'r' ? 3 : -2; }
+
+/// Letters where they stand alone, else how many there are; what a numeral would touch joins it.
+void AddMarks(Layer& layer, const std::vector<EventMark>& marks, double y) {
+  for (std::size_t i = 0; i < marks.size();) {
+    std::size_t count = 1;
+    double x = marks[i].x, reach = x + kMarkSpacing;
+    std::string text(1, marks[i].letter);
+    while (i + count < marks.size() && marks[i + count].x < reach) {
+      ++count;
+      text = FormatShort(static_cast<double>(count));
+      x = (marks[i].x + marks[i + count - 1].x) / 2;
+      reach = std::max(reach, x + TextWidth(text, kMarkSize, true) / 2 + kMarkSpacing);
+    }
+    if (count == 1) x += Aside(marks[i].letter);
+    layer.shapes.emplace_back(TextShape{
+        x, y, text, {.size = kMarkSize, .colour = kInk, .bold = true, .anchor = Anchor::kMiddle}});
+    i += count;
+  }
+}
+
+/// From the facing edges of the rows, so that a line crosses no state of its own ends.
+Layer MessageLines(const ViewInput& input, const RowGrid& grid, const TimeAxis& axis) {
+  Layer layer{"messages", {}};
+  const Timeline& detail = *input.detail;
+  if (detail.messages.size() > kMostLines) return layer;
+  for (const bool of_culprit : {false, true})
+    for (const TimelineMessage& message : detail.messages) {
+      const bool culprit = detail.rows[message.sender_row].rank == CulpritOf(input);
+      const GridRow& from = grid.rows[grid.RowOf(message.sender_row)];
+      const GridRow& to = grid.rows[grid.RowOf(message.receiver_row)];
+      if (culprit != of_culprit || from.y == to.y) continue;
+      const bool down = to.y > from.y;
+      const Point begin{axis.XOf(message.send_s), down ? from.y + from.height : from.y};
+      const Point end{axis.XOf(message.receive_s), down ? to.y : to.y + to.height};
+      layer.shapes.emplace_back(LineShape{{begin, end},
+                                          culprit ? kInk : kSecondary,
+                                          culprit ? 1.0 : 0.9,
+                                          false,
+                                          culprit ? 0.9 : 0.55});
+    }
+  return layer;
+}
+
+std::string NoteFor(const Timeline& detail, bool marks) {
+  const bool lines = detail.messages.size() <= kMostLines;
+  std::string note =
+      marks ? "s send \u00b7 r receive \u00b7 numeral: that many too close to draw apart" : "";
+  if (detail.messages.size() < detail.message_count || !lines) {
+    const std::string count = FormatCount(static_cast<std::int64_t>(detail.message_count));
+    const std::string shown = FormatCount(static_cast<std::int64_t>(detail.messages.size()));
+    if (!note.empty()) note += " \u00b7 ";
+    note += lines ? fmt::format("{} of {} messages", shown, count)
+                  : fmt::format("{} messages, too many for lines", count);
+  }
+  return note;
+}
+
+}  // namespace
+
+Scene DetailView(const ViewInput& input) {
+  Scene scene{.name = "detail", .width = kDetailWidth};
+  if (!HasRows(input.detail) || !(input.detail->end_s > input.detail->begin_s)) return scene;
+  const Timeline& detail = *input.detail;
+  const RowGrid grid = MakeRowGrid(detail.rows, CulpritOf(input), DetailLimits(detail.rows.size()));
+  const TimeAxis axis{detail.begin_s, detail.end_s, AxisLeft(grid), kDetailWidth};
+  const bool marks = grid.pitch >= kLeastPitchForMarks && !detail.messages.empty();
+  const double bottom = grid.rows.front().y + grid.height + 6;
+  scene.height = std::ceil(bottom + kAxisHeight);
+  scene.title = "Detail " + FormatSpan(detail.begin_s, detail.end_s);
+  scene.description =
+      fmt::format("States of each {} with {} messages as lines from sender to receiver.",
+                  NounFor(detail), FormatCount(static_cast<std::int64_t>(detail.message_count)));
+  scene.note = NoteFor(detail, marks);
+  scene.layers.push_back(
+      StateLayer(MakeStateRuns(detail, grid, axis.width(), kQuadBudget), grid, axis));
+  scene.layers.push_back(RowLabels(grid, axis.left - 10));
+  Layer time{"axis", {}};
+  AddTimeAxis(time, axis, bottom);
+  scene.layers.push_back(std::move(time));
+  scene.layers.push_back(MessageLines(input, grid, axis));
+  if (!marks) return scene;
+  Layer letters{"letters", {}};
+  const std::vector<std::vector<EventMark>> by_row = MarksByRow(detail, grid, axis);
+  for (std::size_t i = 0; i < by_row.size(); ++i) AddMarks(letters, by_row[i], grid.rows[i].y - 8);
+  scene.layers.push_back(std::move(letters));
+  return scene;
+}
+
+}  // namespace stipple

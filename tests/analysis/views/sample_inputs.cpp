@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: MIT
+#include "sample_inputs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace stipple {
+namespace {
+
+constexpr double kSpan = 18.4;   // seconds
+constexpr double kTurn = 9.1;    // when the host has no more work
+constexpr double kRound = 0.64;  // of one exchange with node 0 after that
+constexpr double kDetailBegin = 11.55, kDetailEnd = 13.15;
+
+/// One stretch of a rank in one state; times in seconds.
+struct Stretch {
+  double begin, end;
+  State state;
+};
+using Stretches = std::vector<Stretch>;
+using Random = std::mt19937;
+
+double Uniform(Random& random, double low, double high) {
+  return low + (high - low) * static_cast<double>(random() % 100'000) / 100'000;
+}
+
+void Add(Stretches& row, double& time, double length, State state) {
+  row.push_back({time, time + length, state});
+  time += length;
+}
+
+/// Bundles from the host: compute, pack, send, wait a little.
+void WorkForHost(Stretches& row, Random& random) {
+  for (double time = 0; time < kTurn;) {
+    Add(row, time, Uniform(random, 0.12, 0.4), State::kUser);
+    Add(row, time, 0.006, State::kSystem);
+    Add(row, time, 0.012, State::kMessage);
+    Add(row, time, Uniform(random, 0.02, 0.06), State::kIdle);
+  }
+}
+
+/// After the turn node 0 works all the time and the others wait for it in rounds.
+void WaitForNodeZero(Stretches& row, Random& random, bool is_zero, double phase) {
+  for (double time = kTurn; time < kSpan;) {
+    if (is_zero) {
+      Add(row, time, kRound - 0.06, State::kUser);
+      Add(row, time, 0.012, State::kSystem);
+      Add(row, time, 0.048, State::kMessage);
+      continue;
+    }
+    const double busy = Uniform(random, 0.12, 0.2);
+    Add(row, time, 0.04 + phase, State::kIdle);
+    Add(row, time, busy, State::kUser);
+    Add(row, time, 0.006, State::kMessage);
+    Add(row, time, std::max(0.0, kRound - busy - 0.046 - phase), State::kIdle);
+  }
+}
+
+Stretches StretchesOf(int node, int nodes, bool is_host) {
+  Random random(static_cast<unsigned>(node) * 7919U + 13U);
+  Stretches row;
+  if (is_host) {
+    for (double time = 0; time < kTurn;) {
+      Add(row, time, 0.012, State::kMessage);
+      Add(row, time, 0.006, State::kSystem);
+      Add(row, time, Uniform(random, 0.02, 0.14), State::kIdle);
+    }
+    row.push_back({kTurn, kSpan, State::kIdle});
+    return row;
+  }
+  WorkForHost(row, random);
+  WaitForNodeZero(row, random, node == 0, 0.03 * node / nodes);
+  return row;
+}
+
+std::vector<StateShares> Columns(const Stretches& row, double begin, double end,
+                                 std::size_t count) {
+  std::vector<StateShares> columns(count, StateShares{});
+  const double width = (end - begin) / static_cast<double>(count);
+  const auto column_of = [&](double time) {
+    return static_cast<std::size_t>(
+        std::clamp((time - begin) / width, 0.0, static_cast<double>(count)));
+  };
+  for (const Stretch& stretch : row)
+    for (std::size_t i = column_of(stretch.begin); i < std::min(count, column_of(stretch.end) + 1);
+         ++i) {
+      const double left = begin + static_cast<double>(i) * width;
+      const double shared = std::min(stretch.end, left + width) - std::max(stretch.begin, left);
+      if (shared > 0)
+        columns[i][static_cast<std::size_t>(stretch.state)] += static_cast<float>(shared / width);
+    }
+  for (StateShares& shares : columns) {
+    const float sum = shares[0] + shares[1] + shares[2] + shares[3];
+    if (sum > 1)
+      for (float& share : shares) share /= sum;
+  }
+  return columns;
+}
+
+TimelineRow RowOf(int rank, bool host) {
+  return {host ? "host" : std::to_string(rank), rank, host, {}};
+}
+
+Timeline EmptyTimeline(int nodes, bool host, double begin, double end) {
+  Timeline timeline{begin, end, {}, {}, {}, 0};
+  for (int rank = 0; rank < nodes; ++rank) timeline.rows.push_back(RowOf(rank, false));
+  if (host) timeline.rows.push_back(RowOf(nodes, true));
+  return timeline;
+}
+
+void AddMessage(Timeline& timeline, std::size_t from, std::size_t to, double send, double receive) {
+  ++timeline.message_count;
+  if (send >= timeline.begin_s && receive <= timeline.end_s)
+    timeline.messages.push_back({from, to, send, receive, 900});
+}
+
+/// In each round node 0 sends to every node and hears back.
+void AddRounds(Timeline& timeline, int nodes) {
+  for (double round = kTurn + kRound - 0.06; round < kSpan; round += kRound)
+    for (int node = 1; node < nodes; ++node) {
+      const auto row = static_cast<std::size_t>(node);
+      const double send = round + 0.05 * node / nodes;
+      if (send < timeline.begin_s || send + 0.4 > timeline.end_s) continue;
+      AddMessage(timeline, 0, row, send, send + 0.04 + 0.01 * (node % 3));
+      AddMessage(timeline, row, 0, send + 0.2 + 0.04 * (node % 4), send + 0.31 + 0.03 * (node % 4));
+    }
+}
+
+Table StatesOf(const Timeline& timeline) {
+  Table table{"states",
+              TableShape::kRows,
+              {{"rank"}, {"user_s"}, {"system_s"}, {"message_s"}, {"idle_s"}},
+              {}};
+  for (const TimelineRow& row : timeline.rows) {
+    StateShares sum{};
+    for (const StateShares& shares : row.columns)
+      for (std::size_t s = 0; s < kStateCount; ++s) sum[s] += shares[s];
+    std::vector<Cell> cells{std::int64_t{row.rank}};
+    for (const float share : sum)
+      cells.emplace_back(static_cast<double>(share) / static_cast<double>(row.columns.size()) *
+                         kSpan);
+    table.rows.push_back(std::move(cells));
+  }
+  return table;
+}
+
+Table MatrixOf(const Timeline& timeline, std::int64_t unit) {
+  Table table{unit == 1 ? "messages" : "volume", TableShape::kMatrix, {{"sender"}}, {}};
+  Random random(5);
+  for (const TimelineRow& row : timeline.rows) table.columns.push_back({row.name});
+  for (const TimelineRow& sender : timeline.rows) {
+    std::vector<Cell> cells{sender.name};
+    for (const TimelineRow& receiver : timeline.rows) {
+      std::int64_t count = random() % 5 == 0 ? 2 + static_cast<std::int64_t>(random() % 20) : 0;
+      if (sender.rank == 0 || receiver.rank == 0)
+        count = 14 + static_cast<std::int64_t>(random() % 25);
+      if (sender.is_host || receiver.is_host) count = 26 + static_cast<std::int64_t>(random() % 15);
+      cells.emplace_back(sender.rank == receiver.rank ? std::int64_t{0} : count * unit);
+    }
+    table.rows.push_back(std::move(cells));
+  }
+  return table;
+}
+
+Table ProfileOf(std::size_t functions) {
+  Table table{"profile",
+              TableShape::kRows,
+              {{"region"}, {"file"}, {"line"}, {"calls"}, {"inclusive_s"}, {"exclusive_s"}},
+              {}};
+  const char* names[] = {"stipple::Bvh::Intersect(stipple::Ray const&, stipple::Hit&) const",
+                         "MPI_Recv",
+                         "std::vector<std::unique_ptr<scene::Primitive<double, 3>, "
+                         "std::default_delete<scene::Primitive<double, "
+                         "3> > >, std::allocator<std::unique_ptr<scene::Primitive<double, 3> > > "
+                         ">::emplace_back<scene::Sphere>",
+                         "Shade<&Light::Sample, \"x\" & 'y'>",
+                         "main",
+                         "operator<<(std::ostream&, Colour const&)",
+                         "MPI_Send"};
+  double exclusive = 41.8;
+  for (std::size_t i = 0; i < functions; ++i) {
+    const std::string name = i < std::size(names) ? names[i] : fmt::format("Helper{}", i);
+    const bool mpi = name.starts_with("MPI_");
+    table.rows.push_back({name, std::string(mpi ? "" : "/home/user/raytracer/geometry/bvh.cpp"),
+                          static_cast<std::int64_t>(mpi ? 0 : 40 + i),
+                          static_cast<std::int64_t>(9'000'000 / (i * i + 1)), exclusive * 1.4,
+                          exclusive});
+    exclusive *= 0.72;
+  }
+  return table;
+}
+
+Table WaitsOf(int nodes) {
+  Table table{
+      "waits", TableShape::kRows, {{"kind"}, {"waiter"}, {"culprit"}, {"seconds"}, {"region"}}, {}};
+  for (int i = 1; i < std::min(nodes, 40); ++i)
+    table.rows.push_back(
+        {std::string(i % 4 == 3 ? "wait-at-barrier" : "late-sender"), std::int64_t{i},
+         std::int64_t{i % 7 == 6 ? 3 : 0}, 0.62 / i,
+         std::string("stipple::Bvh::Intersect(stipple::Ray const&, stipple::Hit&) const")});
+  return table;
+}
+
+Finding FindingOf(int nodes, bool host) {
+  Finding finding;
+  finding.sentence = fmt::format("{0}s 1\u2013{1} spend 37% of the run waiting for {2} 0",
+                                 host ? "Node" : "Rank", nodes - 1, host ? "node" : "rank");
+  finding.detail =
+      "It was in Bvh::Intersect, with 1.5 times the mean work; balanced, the run would take 11.9 "
+      "s.";
+  finding.culprit = 0;
+  finding.max_over_mean = 1.5;
+  finding.waited_for = {{0, "0", 47.5, "Bvh::Intersect"}};
+  if (host) finding.waited_for.push_back({nodes, "host", 7.5, "HandOutBundles"});
+  for (int i = 1; i < std::min(nodes, 9); ++i)
+    finding.waited_for.push_back({i, std::to_string(i), 0.1, "Shade"});
+  return finding;
+}
+
+constexpr std::size_t kColumns = 1024;
+
+ReportInput Three() { return SampleReport(3, false); }
+ReportInput Nine() { return SampleReport(8, true); }
+ReportInput ThirtyTwo() { return SampleReport(32, true); }
+ReportInput HundredTwentyEight() { return SampleReport(128, true); }
+ReportInput Thousand() { return SampleReport(1024, false); }
+ReportInput Noise() { return SampleNoise(1024); }
+ReportInput Mono() {
+  ReportInput report = SampleReport(8, true);
+  report.mono = true;
+  return report;
+}
+
+}  // namespace
+
+ReportInput SampleReport(int nodes, bool host) {
+  ReportInput report;
+  report.title = "raytracer --scene rings";
+  report.finding = FindingOf(nodes, host);
+  report.timeline = EmptyTimeline(nodes, host, 0, kSpan);
+  report.detail = EmptyTimeline(nodes, host, kDetailBegin, kDetailEnd);
+  for (std::size_t i = 0; i < report.timeline.rows.size(); ++i) {
+    const Stretches stretches =
+        StretchesOf(static_cast<int>(i), nodes, report.timeline.rows[i].is_host);
+    report.timeline.rows[i].columns = Columns(stretches, 0, kSpan, kColumns);
+    report.detail.rows[i].columns = Columns(stretches, kDetailBegin, kDetailEnd, kColumns);
+  }
+  if (host) report.timeline.marks.push_back({kTurn, "host has no more rays to hand out", nodes});
+  AddRounds(report.detail, nodes);
+  if (nodes <= 32) {
+    AddRounds(report.timeline, nodes);
+    Random random(3);
+    for (double time = 0.1; time < kTurn; time += 0.02)
+      AddMessage(report.timeline, random() % static_cast<unsigned>(nodes), 0, time, time + 0.01);
+  }
+  report.states = StatesOf(report.timeline);
+  report.messages = MatrixOf(report.timeline, 1);
+  report.volume = MatrixOf(report.timeline, 970);
+  report.profile = ProfileOf(nodes > 8 ? 1234 : 12);
+  report.waits = WaitsOf(nodes);
+  report.facts = {fmt::format("{} {}{}", nodes, host ? "nodes" : "ranks", host ? " + host" : ""),
+                  "18.4 s", "1,063 messages", "1.02 MB", "12.4 million events"};
+  if (nodes == 3) report.health = {"1,204 events of rank 2 lost", "3 messages without a receive"};
+  return report;
+}
+
+ReportInput SampleSerial() {
+  ReportInput report;
+  report.title = "sort";
+  report.finding.sentence = "QuickSort takes 61% of the run";
+  report.facts = {"1 process", "18.4 s", "204,118 events"};
+  report.timeline = EmptyTimeline(1, false, 0, kSpan);
+  report.timeline.rows[0].columns = Columns(StretchesOf(0, 1, false), 0, kSpan, kColumns);
+  report.detail = report.timeline;
+  report.states = StatesOf(report.timeline);
+  report.profile = ProfileOf(7);
+  return report;
+}
+
+ReportInput SampleNoise(int ranks) {
+  Random random(1);
+  ReportInput report = SampleReport(2, false);
+  report.timeline = EmptyTimeline(ranks, false, 0, kSpan);
+  report.detail = EmptyTimeline(ranks, false, 4, 5);
+  for (Timeline* timeline : {&report.timeline, &report.detail})
+    for (TimelineRow& row : timeline->rows)
+      for (std::size_t i = 0; i < kColumns; ++i) {
+        const auto user = static_cast<float>(Uniform(random, 0, 0.7));
+        const auto message = static_cast<float>(Uniform(random, 0, 0.3));
+        row.columns.push_back({user, 0.0F, message, 1 - user - message});
+      }
+  for (int i = 0; i < 3000; ++i) {
+    const auto count = static_cast<unsigned>(ranks);
+    const double send = Uniform(random, 4, 4.9);
+    AddMessage(report.detail, random() % count, random() % count, send, send + 0.05);
+  }
+  report.states = StatesOf(report.timeline);
+  for (Table* table : {&report.messages, &report.volume}) {
+    *table = MatrixOf(report.timeline, 1);
+    for (std::vector<Cell>& row : table->rows)
+      for (std::size_t i = 1; i < row.size(); ++i)
+        row[i] = static_cast<std::int64_t>(random() % 1'000'000);
+  }
+  report.profile = ProfileOf(5000);
+  for (std::vector<Cell>& row : report.profile.rows)
+    row[0] = std::string(5000, '<') + std::get<std::string>(row[0]);
+  return report;
+}
+
+ReportInput SampleEmpty() {
+  ReportInput report;
+  report.title = "a.out";
+  report.timeline = EmptyTimeline(1, false, 0, 0);
+  report.timeline.rows[0].columns.assign(1, StateShares{});
+  return report;
+}
+
+std::span<const SampleEntry> Samples() {
+  static constexpr SampleEntry kSamples[] = {{"serial", SampleSerial},
+                                             {"three", Three},
+                                             {"nine", Nine},
+                                             {"thirty-two", ThirtyTwo},
+                                             {"hundred", HundredTwentyEight},
+                                             {"thousand", Thousand},
+                                             {"noise", Noise},
+                                             {"mono", Mono},
+                                             {"empty", SampleEmpty}};
+  return kSamples;
+}
+
+ViewInput ViewsOfSample(const ReportInput& report) {
+  return {&report.timeline, &report.detail, &report.states,
+          &report.messages, &report.volume, &report.finding};
+}
+
+}  // namespace stipple

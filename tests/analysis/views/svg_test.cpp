@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+// What VTK's device makes is repaired before it is written; no display is needed.
+#include "analysis/views/svg.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <string>
+
+#include "analysis/report/html.h"
+#include "analysis/views/palette.h"
+#include "sample_inputs.h"
+
+namespace stipple {
+namespace {
+
+Scene SceneWith(Shape shape) {
+  return {
+      .name = "test", .width = 100, .height = 50, .layers = {Layer{"layer", {std::move(shape)}}}};
+}
+
+bool Contains(const std::string& text, std::string_view part) {
+  return text.find(part) != std::string::npos;
+}
+
+std::size_t Count(const std::string& text, std::string_view part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+TEST(Svg, RightAlignedTextEndsAtItsAnchor) {
+  const std::string svg = DrawSvg(
+      SceneWith(TextShape{60, 20, "node 0", {.size = 13, .colour = kInk, .anchor = Anchor::kEnd}}));
+  EXPECT_TRUE(Contains(
+      svg,
+      R"(<text x="60" y="24.73" fill="#1f2933" font-size="13" text-anchor="end">node 0</text>)"))
+      << svg;
+}
+
+TEST(Svg, TextIsEscapedAndStaysText) {
+  const std::string svg =
+      DrawSvg(SceneWith(TextShape{1, 1, "f<\"a\"> & \u00b5s\xff", {.size = 12, .colour = kInk}}));
+  EXPECT_TRUE(Contains(svg, ">f&lt;&quot;a&quot;&gt; &amp; \u00b5s?</text>")) << svg;
+}
+
+TEST(Svg, AreasHaveNoOutlineAndLinesNoFilling) {
+  const std::string area = DrawSvg(SceneWith(RectShape{10, 5, 20, 30, kInk, {}}));
+  EXPECT_FALSE(Contains(area, "stroke=\"#"));
+  EXPECT_TRUE(Contains(area, R"(<path fill="#1f2933" d="M10 35h20v-30h-20z"/>)")) << area;
+  const std::string line = DrawSvg(SceneWith(LineShape{{{0, 0}, {9, 7}}, kInk, 2, true, 1}));
+  EXPECT_TRUE(Contains(line, R"(fill="none")"));
+  EXPECT_TRUE(Contains(line, R"(stroke-width="2" stroke-dasharray="3 3" d="M0 0l9 7")")) << line;
+}
+
+TEST(Svg, TooltipBelongsToItsRectangle) {
+  const std::string svg = DrawSvg(SceneWith(RectShape{0, 0, 1, 1, kInk, "0 \u2192 1: 2 < 3"}));
+  EXPECT_TRUE(Contains(svg, "<title>0 \u2192 1: 2 &lt; 3</title></path>")) << svg;
+}
+
+TEST(Svg, EqualNeighboursBecomeOneElement) {
+  Scene scene = SceneWith(RectShape{0, 0, 1, 1, kInk, {}});
+  for (int i = 1; i < 50; ++i)
+    scene.layers[0].shapes.emplace_back(RectShape{2.0 * i, 0, 1, 1, kInk, {}});
+  EXPECT_EQ(Count(DrawSvg(scene), "<path"), 1U);
+}
+
+TEST(Svg, StandaloneFileHasItsOwnGround) {
+  const std::string svg = DrawSvg(SceneWith(RectShape{0, 0, 1, 1, kInk, {}}), {.standalone = true});
+  EXPECT_TRUE(Contains(svg, "xmlns=\"http://www.w3.org/2000/svg\" width=\"100\" height=\"50\""));
+  EXPECT_TRUE(Contains(svg, "fill=\"#ffffff\""));
+}
+
+TEST(Report, SameInputGivesTheSameBytesWithoutADisplay) {
+  unsetenv("DISPLAY");
+  for (const int nodes : {1, 8, 40})
+    EXPECT_EQ(ReportPage(SampleReport(nodes, true)), ReportPage(SampleReport(nodes, true)))
+        << nodes;
+}
+
+TEST(Report, StaysBelowAMegabyteForAnyTrace) {
+  for (const SampleEntry& sample : Samples())
+    EXPECT_LE(ReportPage(sample.make()).size(), 1'000'000U) << sample.name;
+}
+
+TEST(Report, FirstLineIsTheFinding) {
+  const ReportInput report = SampleReport(8, true);
+  const std::string page = ReportPage(report);
+  EXPECT_TRUE(Contains(page, "<body>\n<header><h1>" + report.finding.sentence + "</h1>"));
+}
+
+TEST(Report, RefersToNothingOutsideItself) {
+  const std::string page = ReportPage(SampleReport(8, true));
+  for (const char* reference : {"http:", "https:", "src=", "@import", "<link"})
+    EXPECT_FALSE(Contains(page, reference)) << reference;
+}
+
+TEST(Report, SerialProgramHasNoCommunicationSections) {
+  const std::string page = ReportPage(SampleSerial());
+  for (const char* id :
+       {"h-matrix", "h-volume", "h-detail", "h-waited-for", "h-utilisation", "h-waits"})
+    EXPECT_FALSE(Contains(page, id)) << id;
+  EXPECT_TRUE(Contains(page, "h-timeline"));
+  EXPECT_TRUE(Contains(page, "h-profile"));
+}
+
+TEST(Report, LossesStandInTheFactsLine) {
+  const std::string page = ReportPage(SampleReport(3, false));
+  EXPECT_TRUE(Contains(page, "<b>1,204 events of rank 2 lost</b>"));
+  EXPECT_TRUE(Contains(page, "<li>3 messages without a receive</li>"));
+}
+
+TEST(Report, HostileNamesCannotLeaveTheirPlace) {
+  ReportInput report = SampleSerial();
+  const std::string hostile = "</script><script>alert(1)</script>\"'&<";
+  report.title = report.finding.sentence = hostile;
+  report.timeline.rows[0].name = hostile;
+  report.profile.rows[0][0] = hostile;
+  report.profile.rows[0][1] = hostile;
+  EXPECT_FALSE(Contains(ReportPage(report), "<script>alert"));
+}
+
+TEST(Report, ManyFunctionsAreCutAtThirty) {
+  const std::string page = ReportPage(SampleReport(32, true));
+  EXPECT_EQ(Count(page, "<td class=\"share\">"), 30U);
+  EXPECT_TRUE(Contains(page, "and 1,204 more")) << "the rest is named";
+}
+
+}  // namespace
+}  // namespace stipple
