@@ -1,4 +1,4 @@
-#include "errors.h"
+#include "raytracer/errors.h"
 
 #include <fmt/format.h>
 

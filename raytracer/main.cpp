@@ -7,16 +7,16 @@
 #include <cstring>
 #include <fstream>
 
-#include "errors.h"
-#include "geometry/bvh.h"
-#include "image/png_file.h"
-#include "options.h"
-#include "render/marks.h"
-#include "render/picture.h"
-#include "render/render.h"
-#include "report.h"
-#include "scene/load.h"
-#include "scene/nff.h"
+#include "raytracer/errors.h"
+#include "raytracer/geometry/bvh.h"
+#include "raytracer/image/png_file.h"
+#include "raytracer/options.h"
+#include "raytracer/render/marks.h"
+#include "raytracer/render/picture.h"
+#include "raytracer/render/render.h"
+#include "raytracer/report.h"
+#include "raytracer/scene/load.h"
+#include "raytracer/scene/nff.h"
 
 namespace stipple::raytracer {
 namespace {

@@ -1,4 +1,4 @@
-#include "options.h"
+#include "raytracer/options.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-#include "errors.h"
+#include "raytracer/errors.h"
 
 namespace stipple::raytracer {
 namespace {

@@ -9,8 +9,8 @@
 #include <utility>
 #include <variant>
 
-#include "render/sampling.h"
-#include "scene/view.h"
+#include "raytracer/render/sampling.h"
+#include "raytracer/scene/view.h"
 
 namespace stipple::raytracer {
 

@@ -1,4 +1,4 @@
-#include "report.h"
+#include "raytracer/report.h"
 
 #include <fmt/format.h>
 

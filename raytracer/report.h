@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "render/tracer.h"
-#include "render/world.h"
+#include "raytracer/render/tracer.h"
+#include "raytracer/render/world.h"
 
 namespace stipple::raytracer {
 

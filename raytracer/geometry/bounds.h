@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "geometry/vec.h"
+#include "raytracer/geometry/vec.h"
 
 namespace stipple::raytracer {
 

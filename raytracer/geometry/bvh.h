@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "geometry/bounds.h"
-#include "geometry/intersect.h"
-#include "geometry/shapes.h"
+#include "raytracer/geometry/bounds.h"
+#include "raytracer/geometry/intersect.h"
+#include "raytracer/geometry/shapes.h"
 
 namespace stipple::raytracer {
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <numeric>
 
-#include "geometry/bvh.h"
+#include "raytracer/geometry/bvh.h"
 
 namespace stipple::raytracer {
 namespace {

@@ -2,7 +2,7 @@
 // boxes that begin behind the best hit so far are skipped.
 #include <array>
 
-#include "geometry/bvh.h"
+#include "raytracer/geometry/bvh.h"
 
 namespace stipple::raytracer {
 namespace {

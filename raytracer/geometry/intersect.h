@@ -10,8 +10,8 @@
 #include <span>
 #include <utility>
 
-#include "geometry/shapes.h"
-#include "geometry/vec.h"
+#include "raytracer/geometry/shapes.h"
+#include "raytracer/geometry/vec.h"
 
 namespace stipple::raytracer {
 

@@ -1,4 +1,4 @@
-#include "geometry/shapes.h"
+#include "raytracer/geometry/shapes.h"
 
 #include <array>
 

@@ -10,8 +10,8 @@
 #include <span>
 #include <vector>
 
-#include "geometry/bounds.h"
-#include "geometry/vec.h"
+#include "raytracer/geometry/bounds.h"
+#include "raytracer/geometry/vec.h"
 
 namespace stipple::raytracer {
 

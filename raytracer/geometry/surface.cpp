@@ -1,4 +1,4 @@
-#include "geometry/surface.h"
+#include "raytracer/geometry/surface.h"
 
 namespace stipple::raytracer {
 namespace {

@@ -2,7 +2,7 @@
 #ifndef STIPPLE_RAYTRACER_GEOMETRY_SURFACE_H
 #define STIPPLE_RAYTRACER_GEOMETRY_SURFACE_H
 
-#include "geometry/bvh.h"
+#include "raytracer/geometry/bvh.h"
 
 namespace stipple::raytracer {
 

@@ -1,4 +1,4 @@
-#include "image/png_file.h"
+#include "raytracer/image/png_file.h"
 
 #include <fmt/format.h>
 #include <png.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "errors.h"
+#include "raytracer/errors.h"
 
 namespace stipple::raytracer {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/view.h"
+#include "raytracer/scene/view.h"
 
 namespace stipple::raytracer {
 

@@ -1,10 +1,10 @@
-#include "partition/ray_partition.h"
+#include "raytracer/partition/ray_partition.h"
 
 #include <cmath>
 #include <numeric>
 #include <utility>
 
-#include "partition/find_row.h"
+#include "raytracer/partition/find_row.h"
 
 namespace stipple::raytracer {
 namespace {

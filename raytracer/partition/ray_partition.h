@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scene/view.h"
+#include "raytracer/scene/view.h"
 
 namespace stipple::raytracer {
 

@@ -4,8 +4,8 @@
 //
 // It ends because each node sends exactly one message per bundle it was given and one more, and the
 // host answers each one.
-#include "render/marks.h"
-#include "render/render.h"
+#include "raytracer/render/marks.h"
+#include "raytracer/render/render.h"
 
 namespace stipple::raytracer {
 namespace {

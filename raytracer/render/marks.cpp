@@ -1,4 +1,4 @@
-#include "render/marks.h"
+#include "raytracer/render/marks.h"
 
 #include <stipple/user.h>
 

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "render/tracer.h"
+#include "raytracer/render/tracer.h"
 
 namespace stipple::raytracer {
 

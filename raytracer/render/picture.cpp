@@ -1,4 +1,4 @@
-#include "render/picture.h"
+#include "raytracer/render/picture.h"
 
 #include <fmt/format.h>
 

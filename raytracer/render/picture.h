@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "image/png_file.h"
-#include "render/render.h"
+#include "raytracer/image/png_file.h"
+#include "raytracer/render/render.h"
 
 namespace stipple::raytracer {
 

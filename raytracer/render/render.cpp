@@ -1,7 +1,7 @@
-#include "render/render.h"
+#include "raytracer/render/render.h"
 
-#include "partition/find_row.h"
-#include "render/marks.h"
+#include "raytracer/partition/find_row.h"
+#include "raytracer/render/marks.h"
 
 namespace stipple::raytracer {
 namespace {

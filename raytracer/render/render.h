@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "partition/ray_partition.h"
-#include "render/sampling.h"
-#include "render/world.h"
+#include "raytracer/partition/ray_partition.h"
+#include "raytracer/render/sampling.h"
+#include "raytracer/render/world.h"
 
 namespace stipple::raytracer {
 

@@ -1,4 +1,4 @@
-#include "render/sampling.h"
+#include "raytracer/render/sampling.h"
 
 #include <cmath>
 #include <cstdlib>

@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "partition/ray_partition.h"
-#include "render/tracer.h"
-#include "scene/view.h"
+#include "raytracer/partition/ray_partition.h"
+#include "raytracer/render/tracer.h"
+#include "raytracer/scene/view.h"
 
 namespace stipple::raytracer {
 

@@ -1,10 +1,10 @@
-#include "render/tracer.h"
+#include "raytracer/render/tracer.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "geometry/surface.h"
+#include "raytracer/geometry/surface.h"
 
 namespace stipple::raytracer {
 namespace {

@@ -17,8 +17,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "geometry/bvh.h"
-#include "scene/scene.h"
+#include "raytracer/geometry/bvh.h"
+#include "raytracer/scene/scene.h"
 
 namespace stipple::raytracer {
 

@@ -1,4 +1,4 @@
-#include "render/world.h"
+#include "raytracer/render/world.h"
 
 namespace stipple::raytracer {
 

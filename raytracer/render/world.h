@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "errors.h"
+#include "raytracer/errors.h"
 
 namespace stipple::raytracer {
 

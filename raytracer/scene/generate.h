@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "scene/scene.h"
+#include "raytracer/scene/scene.h"
 
 namespace stipple::raytracer {
 

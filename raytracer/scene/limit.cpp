@@ -3,7 +3,7 @@
 #include <numeric>
 #include <span>
 
-#include "scene/scene.h"
+#include "raytracer/scene/scene.h"
 
 namespace stipple::raytracer {
 namespace {

@@ -1,13 +1,13 @@
-#include "scene/load.h"
+#include "raytracer/scene/load.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
 
-#include "errors.h"
-#include "scene/generate.h"
-#include "scene/nff.h"
+#include "raytracer/errors.h"
+#include "raytracer/scene/generate.h"
+#include "raytracer/scene/nff.h"
 
 namespace stipple::raytracer {
 namespace {

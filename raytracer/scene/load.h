@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "scene/scene.h"
+#include "raytracer/scene/scene.h"
 
 namespace stipple::raytracer {
 

@@ -2,7 +2,7 @@
 #ifndef STIPPLE_RAYTRACER_SCENE_MATRIX_H
 #define STIPPLE_RAYTRACER_SCENE_MATRIX_H
 
-#include "geometry/vec.h"
+#include "raytracer/geometry/vec.h"
 
 namespace stipple::raytracer {
 

@@ -14,7 +14,7 @@
 #include <string>
 #include <string_view>
 
-#include "scene/scene.h"
+#include "raytracer/scene/scene.h"
 
 namespace stipple::raytracer {
 

@@ -5,9 +5,9 @@
 #include <fstream>
 #include <sstream>
 
-#include "errors.h"
-#include "scene/nff.h"
-#include "scene/nff_tokens.h"
+#include "raytracer/errors.h"
+#include "raytracer/scene/nff.h"
+#include "raytracer/scene/nff_tokens.h"
 
 namespace stipple::raytracer {
 namespace {

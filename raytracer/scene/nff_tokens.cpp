@@ -1,4 +1,4 @@
-#include "scene/nff_tokens.h"
+#include "raytracer/scene/nff_tokens.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <string>
 #include <system_error>
 
-#include "errors.h"
+#include "raytracer/errors.h"
 
 namespace stipple::raytracer {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <string_view>
 
-#include "geometry/vec.h"
+#include "raytracer/geometry/vec.h"
 
 namespace stipple::raytracer {
 

@@ -5,8 +5,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "errors.h"
-#include "scene/nff.h"
+#include "raytracer/errors.h"
+#include "raytracer/scene/nff.h"
 
 namespace stipple::raytracer {
 namespace {

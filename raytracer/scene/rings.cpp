@@ -2,8 +2,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "scene/generate.h"
-#include "scene/matrix.h"
+#include "raytracer/scene/generate.h"
+#include "raytracer/scene/matrix.h"
 
 namespace stipple::raytracer {
 namespace {

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "geometry/shapes.h"
-#include "geometry/vec.h"
-#include "scene/view.h"
+#include "raytracer/geometry/shapes.h"
+#include "raytracer/geometry/vec.h"
+#include "raytracer/scene/view.h"
 
 namespace stipple::raytracer {
 

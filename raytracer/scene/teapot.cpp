@@ -9,7 +9,7 @@
 #include <cmath>
 #include <span>
 
-#include "scene/generate.h"
+#include "raytracer/scene/generate.h"
 
 namespace stipple::raytracer {
 namespace {

@@ -1,4 +1,4 @@
-#include "scene/view.h"
+#include "raytracer/scene/view.h"
 
 #include <numbers>
 

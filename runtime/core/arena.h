@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "syscalls.h"
+#include "runtime/core/syscalls.h"
 
 namespace stipple {
 

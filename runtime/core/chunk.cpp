@@ -20,7 +20,7 @@
 // an event fills the window. Its late store must not hit the reused window. Such a slot is still
 // zero, or its record open: if there is one, the window stays in the file as it is, a chunk like
 // any other, and the thread takes a new one.
-#include "chunk.h"
+#include "runtime/core/chunk.h"
 
 #include <emmintrin.h>
 #include <sys/mman.h>

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "stream.h"
+#include "runtime/core/stream.h"
 
 namespace stipple {
 

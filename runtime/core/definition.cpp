@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Definition chunks. Each keeps room at its end for a Loss and a ProcessEnd record, so that a full
 // disk can still be told from a crash.
-#include "clock.h"
-#include "process.h"
-#include "recorder.h"
+#include "runtime/core/clock.h"
+#include "runtime/core/process.h"
+#include "runtime/core/recorder.h"
 
 namespace stipple {
 namespace {

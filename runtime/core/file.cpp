@@ -3,7 +3,7 @@
 // the program by SIGBUS, while a failed allocation is a return value. Mappings stay until the
 // process ends: an event may have reserved its slot just before a signal handler filled the rest of
 // the chunk and several more.
-#include "file.h"
+#include "runtime/core/file.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "line.h"
+#include "runtime/core/line.h"
 
 namespace stipple {
 

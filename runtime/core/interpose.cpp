@@ -7,8 +7,8 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include "process.h"
-#include "recorder.h"
+#include "runtime/core/process.h"
+#include "runtime/core/recorder.h"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "syscalls.h"
+#include "runtime/core/syscalls.h"
 
 namespace stipple {
 

@@ -11,7 +11,7 @@
 #include <atomic>
 #include <cstdint>
 
-#include "syscalls.h"
+#include "runtime/core/syscalls.h"
 
 namespace stipple {
 

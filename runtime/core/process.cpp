@@ -2,7 +2,7 @@
 // A process that never records owns one pointer. The state below is mapped at the first
 // registration, in pages that a forked child finds zeroed: the child is a new process that has not
 // begun, and its first event begins its own stream.
-#include "process.h"
+#include "runtime/core/process.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -10,11 +10,11 @@
 #include <sys/mman.h>
 #include <sys/utsname.h>
 
-#include "clock.h"
-#include "recorder.h"
-#include "region.h"
-#include "settings.h"
-#include "stream.h"
+#include "runtime/core/clock.h"
+#include "runtime/core/recorder.h"
+#include "runtime/core/region.h"
+#include "runtime/core/settings.h"
+#include "runtime/core/stream.h"
 
 namespace stipple {
 namespace {

@@ -6,8 +6,8 @@
 #include <atomic>
 #include <cstdint>
 
-#include "file.h"
-#include "lock.h"
+#include "runtime/core/file.h"
+#include "runtime/core/lock.h"
 #include "stipple/format.h"
 
 namespace stipple {

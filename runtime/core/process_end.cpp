@@ -2,11 +2,11 @@
 // Return from main and exit: libc calls back, with the status. The callback is asked for while this
 // library is loaded, before the loader's own is, so it comes after every destructor of every
 // object.
-#include "process_end.h"
+#include "runtime/core/process_end.h"
 
 #include <stdlib.h>
 
-#include "process.h"
+#include "runtime/core/process.h"
 
 namespace stipple {
 namespace {

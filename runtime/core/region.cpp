@@ -2,12 +2,12 @@
 // One table for regions and one for names of marks. Entries stand in blocks that never move; an
 // open hash table over them doubles. An entry is complete before the count or the hash table shows
 // it, so a fork by another thread finds every table sound.
-#include "region.h"
+#include "runtime/core/region.h"
 
-#include "arena.h"
-#include "recorder.h"
-#include "settings.h"
-#include "stream.h"
+#include "runtime/core/arena.h"
+#include "runtime/core/recorder.h"
+#include "runtime/core/settings.h"
+#include "runtime/core/stream.h"
 
 namespace stipple {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-#include "process.h"
+#include "runtime/core/process.h"
 
 namespace stipple {
 

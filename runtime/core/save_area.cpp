@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "save_area.h"
+#include "runtime/core/save_area.h"
 
 #include <cpuid.h>
 

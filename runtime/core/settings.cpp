@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "settings.h"
+#include "runtime/core/settings.h"
 
 #include <stdlib.h>
 
-#include "line.h"
+#include "runtime/core/line.h"
 
 namespace stipple {
 namespace {

@@ -6,18 +6,18 @@
 // record as well: it gets slots of its own. Only taking a chunk needs the signals blocked, and
 // after blocking them the reservation is tried again first, since a handler may have taken a chunk
 // meanwhile.
-#include "stream.h"
+#include "runtime/core/stream.h"
 
 #include <pthread.h>
 #include <sys/mman.h>
 
-#include "chunk.h"
-#include "clock.h"
-#include "process_end.h"
-#include "recorder.h"
-#include "region.h"
-#include "save_area.h"
-#include "settings.h"
+#include "runtime/core/chunk.h"
+#include "runtime/core/clock.h"
+#include "runtime/core/process_end.h"
+#include "runtime/core/recorder.h"
+#include "runtime/core/region.h"
+#include "runtime/core/save_area.h"
+#include "runtime/core/settings.h"
 
 extern "C" {
 /// Reservations in it always fail: what a thread points at until its first event.

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "process.h"
+#include "runtime/core/process.h"
 #include "stipple/abi.h"
 
 namespace stipple {

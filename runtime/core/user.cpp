@@ -2,10 +2,10 @@
 // user.h: marks, counters, the host.
 #include "stipple/user.h"
 
-#include "clock.h"
-#include "process.h"
-#include "recorder.h"
-#include "region.h"
+#include "runtime/core/clock.h"
+#include "runtime/core/process.h"
+#include "runtime/core/recorder.h"
+#include "runtime/core/region.h"
 
 namespace stipple {
 namespace {

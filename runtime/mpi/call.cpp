@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "call.h"
+#include "runtime/mpi/call.h"
 
 #include <dlfcn.h>
 
@@ -14,7 +14,7 @@ Call calls[] = {
 #define STIPPLE_REMOVED(name, parameters, arguments) {"PMPI_" #name, {nullptr}, {0}},
 #define STIPPLE_BY_HAND(name) {"PMPI_" #name, {nullptr}, {0}},
 #define STIPPLE_SILENT(name) {"PMPI_" #name, {nullptr}, {0}},
-#include "calls.def"
+#include "runtime/mpi/calls.def"
 #undef STIPPLE_CALL
 #undef STIPPLE_COLLECTIVE
 #undef STIPPLE_ICOLLECTIVE

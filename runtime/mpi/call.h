@@ -38,7 +38,7 @@ enum class CallIndex : std::uint32_t {
 #define STIPPLE_REMOVED(name, parameters, arguments) k##name,
 #define STIPPLE_BY_HAND(name) k##name,
 #define STIPPLE_SILENT(name) k##name,
-#include "calls.def"
+#include "runtime/mpi/calls.def"
 #undef STIPPLE_CALL
 #undef STIPPLE_COLLECTIVE
 #undef STIPPLE_ICOLLECTIVE
@@ -140,7 +140,7 @@ extern "C" {
 #define STIPPLE_REMOVED(name, parameters, arguments) int PMPI_##name parameters;
 #define STIPPLE_BY_HAND(name)
 #define STIPPLE_SILENT(name)
-#include "calls.def"
+#include "runtime/mpi/calls.def"
 #undef STIPPLE_CALL
 #undef STIPPLE_COLLECTIVE
 #undef STIPPLE_ICOLLECTIVE

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "clock_sync.h"
+#include "runtime/mpi/clock_sync.h"
 
 #include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "call.h"
-#include "communicator.h"
-#include "least_round_trip.h"
+#include "runtime/mpi/call.h"
+#include "runtime/mpi/communicator.h"
+#include "runtime/mpi/least_round_trip.h"
 #include "stipple/format.h"
 
 namespace stipple::mpi {

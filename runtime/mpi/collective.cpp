@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "collective.h"
+#include "runtime/mpi/collective.h"
 
-#include "message.h"
+#include "runtime/mpi/message.h"
 #include "stipple/format.h"
 
 namespace stipple::mpi {

@@ -11,8 +11,8 @@
 #ifndef STIPPLE_RUNTIME_MPI_COLLECTIVE_H
 #define STIPPLE_RUNTIME_MPI_COLLECTIVE_H
 
-#include "call.h"
-#include "communicator.h"
+#include "runtime/mpi/call.h"
+#include "runtime/mpi/communicator.h"
 
 namespace stipple::mpi {
 

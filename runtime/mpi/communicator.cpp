@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "communicator.h"
+#include "runtime/mpi/communicator.h"
 
-#include "call.h"
-#include "handle_table.h"
+#include "runtime/mpi/call.h"
+#include "runtime/mpi/handle_table.h"
 #include "stipple/format.h"
 
 namespace stipple::mpi {

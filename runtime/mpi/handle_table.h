@@ -13,7 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "pages.h"
+#include "runtime/mpi/pages.h"
 
 namespace stipple::mpi {
 

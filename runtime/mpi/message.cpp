@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "message.h"
+#include "runtime/mpi/message.h"
 
-#include "handle_table.h"
+#include "runtime/mpi/handle_table.h"
 #include "stipple/format.h"
 
 namespace stipple::mpi {

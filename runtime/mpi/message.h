@@ -6,9 +6,9 @@
 #ifndef STIPPLE_RUNTIME_MPI_MESSAGE_H
 #define STIPPLE_RUNTIME_MPI_MESSAGE_H
 
-#include "call.h"
-#include "communicator.h"
-#include "pages.h"
+#include "runtime/mpi/call.h"
+#include "runtime/mpi/communicator.h"
+#include "runtime/mpi/pages.h"
 
 namespace stipple::mpi {
 

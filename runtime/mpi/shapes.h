@@ -5,11 +5,11 @@
 #ifndef STIPPLE_RUNTIME_MPI_SHAPES_H
 #define STIPPLE_RUNTIME_MPI_SHAPES_H
 
-#include "call.h"
-#include "collective.h"
-#include "communicator.h"
-#include "message.h"
-#include "world.h"
+#include "runtime/mpi/call.h"
+#include "runtime/mpi/collective.h"
+#include "runtime/mpi/communicator.h"
+#include "runtime/mpi/message.h"
+#include "runtime/mpi/world.h"
 
 #define STIPPLE_EXPORT __attribute__((visibility("default")))
 

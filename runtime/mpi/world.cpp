@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "world.h"
+#include "runtime/mpi/world.h"
 
-#include "call.h"
-#include "clock_sync.h"
-#include "communicator.h"
-#include "handle_table.h"
+#include "runtime/mpi/call.h"
+#include "runtime/mpi/clock_sync.h"
+#include "runtime/mpi/communicator.h"
+#include "runtime/mpi/handle_table.h"
 
 namespace stipple::mpi {
 

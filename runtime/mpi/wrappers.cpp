@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The wrappers: calls.def expanded by the shapes.
-#include "shapes.h"
+#include "runtime/mpi/shapes.h"
 
 namespace stipple::mpi {
 
@@ -14,7 +14,7 @@ namespace stipple::mpi {
   STIPPLE_SHAPE_plain(name, parameters, arguments)
 #define STIPPLE_BY_HAND(name)
 #define STIPPLE_SILENT(name)
-#include "calls.def"
+#include "runtime/mpi/calls.def"
 
 // MPI defines no effect for Pcontrol: it is a message to a profiler, so its further arguments end
 // here.

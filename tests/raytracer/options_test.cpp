@@ -1,12 +1,12 @@
 // Every option is a row; what the rows promise, the parser keeps.
-#include "options.h"
+#include "raytracer/options.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
-#include "errors.h"
+#include "raytracer/errors.h"
 
 namespace stipple::raytracer {
 namespace {

@@ -1,12 +1,12 @@
 // The hierarchy changes what is tested, never what is hit.
-#include "geometry/bvh.h"
+#include "raytracer/geometry/bvh.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <random>
 
-#include "scene/generate.h"
+#include "raytracer/scene/generate.h"
 
 namespace stipple::raytracer {
 namespace {

@@ -1,12 +1,12 @@
 // Intersections whose answer is known in closed form.
-#include "geometry/intersect.h"
+#include "raytracer/geometry/intersect.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <numbers>
 
-#include "geometry/surface.h"
+#include "raytracer/geometry/surface.h"
 
 namespace stipple::raytracer {
 namespace {

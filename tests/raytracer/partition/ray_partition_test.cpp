@@ -1,4 +1,4 @@
-#include "partition/ray_partition.h"
+#include "raytracer/partition/ray_partition.h"
 
 #include <gtest/gtest.h>
 

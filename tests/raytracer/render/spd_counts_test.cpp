@@ -2,8 +2,8 @@
 // they are the oracle.
 #include <gtest/gtest.h>
 
-#include "render/sampling.h"
-#include "scene/generate.h"
+#include "raytracer/render/sampling.h"
+#include "raytracer/scene/generate.h"
 
 namespace stipple::raytracer {
 namespace {

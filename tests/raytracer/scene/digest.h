@@ -9,7 +9,7 @@
 #include <sstream>
 #include <string>
 
-#include "scene/nff.h"
+#include "raytracer/scene/nff.h"
 
 namespace stipple::raytracer {
 

@@ -1,12 +1,12 @@
 // The generated scenes are SPD's, object by object. The digests were computed from the files that
 // SPD's own generators write; ours gives the same ones.
-#include "scene/generate.h"
+#include "raytracer/scene/generate.h"
 
 #include <gtest/gtest.h>
 
-#include "errors.h"
+#include "raytracer/errors.h"
 #include "scene/digest.h"
-#include "scene/load.h"
+#include "raytracer/scene/load.h"
 
 namespace stipple::raytracer {
 namespace {

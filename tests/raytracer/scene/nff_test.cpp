@@ -1,4 +1,4 @@
-#include "scene/nff.h"
+#include "raytracer/scene/nff.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -8,8 +8,8 @@
 #include <iterator>
 #include <string>
 
-#include "errors.h"
-#include "scene/generate.h"
+#include "raytracer/errors.h"
+#include "raytracer/scene/generate.h"
 
 namespace stipple::raytracer {
 namespace {
