@@ -14,7 +14,7 @@
 #include <atomic>
 #include <cstdint>
 
-#include "recorder.h"
+#include "runtime/core/recorder.h"
 
 // mpi.h may replace the names that MPI-3 removed by macros that refuse them.
 #undef MPI_Address

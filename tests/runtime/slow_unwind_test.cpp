@@ -7,7 +7,7 @@
 #include <unwind.h>
 
 #include "events.h"
-#include "save_area.h"
+#include "runtime/core/save_area.h"
 
 extern "C" {
 void stipple_slow();

@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "events.h"
-#include "recorder.h"
+#include "runtime/core/recorder.h"
 #include "stipple/user.h"
 
 namespace {

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "raytracer/errors.h"
-#include "scene/digest.h"
 #include "raytracer/scene/load.h"
+#include "scene/digest.h"
 
 namespace stipple::raytracer {
 namespace {

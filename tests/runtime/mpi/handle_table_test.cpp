@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "handle_table.h"
+#include "runtime/mpi/handle_table.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "least_round_trip.h"
+#include "runtime/mpi/least_round_trip.h"
 
 #include <gtest/gtest.h>
 
