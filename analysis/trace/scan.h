@@ -58,6 +58,16 @@ struct ScanPosition {
 /// says; else 0.
 std::uint64_t SoundRecordWords(const EventWord* word, const EventWord* end);
 
+/// What a scan does at a record: the words to step over (0: the rest of the chunk cannot be read),
+/// whether the record is there to be seen, and the time after it.
+struct RecordStep {
+  std::uint64_t words = 0;
+  bool sound = false;
+  std::uint64_t now = 0;
+};
+RecordStep StepRecord(const EventWord* word, const Chunk& chunk, std::uint64_t now,
+                      std::uint64_t limit, ScanCounts& counts);
+
 /// The unclocked run that begins at `word`: how many, and the step between them.
 struct UnclockedRun {
   std::uint64_t events = 0;
@@ -121,24 +131,16 @@ bool ScanSome(const ThreadStream& thread, std::uint32_t region_count, std::uint6
     const EventWord word = *w;
     std::uint32_t region = static_cast<std::uint32_t>(word & kRegionMask);
     if (region >= kKindBase) [[unlikely]] {
-      // Its last words may be zeros, so it may reach beyond `end`.
-      const std::uint64_t words = SoundRecordWords(w, chunk.end);
-      if (words == 0) {
-        ++counts.bad_records;
+      const RecordStep record = StepRecord(w, chunk, now, limit, counts);
+      if (record.words == 0) {
         w = end;
         break;
       }
-      if (IsClosed(word)) {
-        ++counts.records;
-        if (words > 1 && KindOf(word) < RecordKind::kDefineRegion) {
-          const std::uint64_t ticks = w[1] < limit ? w[1] : limit;
-          now = now > ticks ? now : ticks;
-        }
+      if (record.sound) {
+        now = record.now;
         hot.Record(w, now);
-      } else {
-        ++counts.open_records;
       }
-      w += words;
+      w += record.words;
       continue;
     }
     const std::uint64_t low = TimeOf(word);
