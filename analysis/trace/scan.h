@@ -14,6 +14,7 @@
 #ifndef STIPPLE_ANALYSIS_TRACE_SCAN_H
 #define STIPPLE_ANALYSIS_TRACE_SCAN_H
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -119,23 +120,18 @@ bool ScanSome(const ThreadStream& thread, std::uint32_t region_count, std::uint6
       at.chunk + 1 < thread.chunks.size() ? thread.chunks[at.chunk + 1].ticks : kNoTickLimit;
   const EventWord* const end = WrittenEnd(chunk);
   const EventWord* w = at.word == nullptr ? chunk.begin : at.word;
-  const auto left = static_cast<std::uint64_t>(end - w);
-  const EventWord* const stop = w + (left < budget ? left : budget);
+  const EventWord* const stop = w + std::min(static_cast<std::uint64_t>(end - w), budget);
   std::uint64_t now = at.now > chunk.ticks ? at.now : chunk.ticks;
   std::uint64_t step = at.step;
   std::uint64_t unclocked = at.unclocked;
   std::uint64_t function_events = 0;
-  std::uint64_t undefined = 0;
   decltype(auto) hot = HotPartOf(visitor);
   while (w < stop) {
     const EventWord word = *w;
     std::uint32_t region = static_cast<std::uint32_t>(word & kRegionMask);
     if (region >= kKindBase) [[unlikely]] {
       const RecordStep record = StepRecord(w, chunk, now, limit, counts);
-      if (record.words == 0) {
-        w = end;
-        break;
-      }
+      if (record.words == 0) w = end;
       if (record.sound) {
         now = record.now;
         hot.Record(w, now);
@@ -162,7 +158,7 @@ bool ScanSome(const ThreadStream& thread, std::uint32_t region_count, std::uint6
     }
     if (region == 0 || region >= region_count) [[unlikely]] {
       region = 0;
-      ++undefined;
+      ++counts.undefined_regions;
     }
     ++function_events;
     hot.Function(region, IsLeave(word), now);
@@ -170,7 +166,6 @@ bool ScanSome(const ThreadStream& thread, std::uint32_t region_count, std::uint6
   }
   if constexpr (HasHotPart<Visitor>) visitor.End(hot);
   counts.function_events += function_events;
-  counts.undefined_regions += undefined;
   at = w < end ? ScanPosition{at.chunk, w, now, step, unclocked}
                : ScanPosition{at.chunk + 1, nullptr, now, 0, 0};
   return true;
