@@ -44,6 +44,23 @@ std::uint64_t SoundRecordWords(const EventWord* word, const EventWord* end) {
   return words <= static_cast<std::uint64_t>(end - word) ? words : 0;
 }
 
+RecordStep StepRecord(const EventWord* word, const Chunk& chunk, std::uint64_t now,
+                      std::uint64_t limit, ScanCounts& counts) {
+  // Its last words may be zeros, so it may reach beyond what counts as written.
+  const std::uint64_t words = SoundRecordWords(word, chunk.end);
+  if (words == 0) {
+    ++counts.bad_records;
+    return {};
+  }
+  if (!IsClosed(*word)) {
+    ++counts.open_records;
+    return {words, false, now};
+  }
+  ++counts.records;
+  const bool has_time = words > 1 && KindOf(*word) < RecordKind::kDefineRegion;
+  return {words, true, has_time ? std::max(now, std::min(word[1], limit)) : now};
+}
+
 UnclockedRun MeasureUnclocked(const EventWord* word, const EventWord* end, std::uint64_t now,
                               std::uint64_t limit) {
   UnclockedRun run;

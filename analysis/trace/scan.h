@@ -14,6 +14,7 @@
 #ifndef STIPPLE_ANALYSIS_TRACE_SCAN_H
 #define STIPPLE_ANALYSIS_TRACE_SCAN_H
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -57,6 +58,16 @@ struct ScanPosition {
 /// Words of the record at `word` when it lies wholly in [word, end) and is as long as its kind
 /// says; else 0.
 std::uint64_t SoundRecordWords(const EventWord* word, const EventWord* end);
+
+/// What a scan does at a record: the words to step over (0: the rest of the chunk cannot be read),
+/// whether the record is there to be seen, and the time after it.
+struct RecordStep {
+  std::uint64_t words = 0;
+  bool sound = false;
+  std::uint64_t now = 0;
+};
+RecordStep StepRecord(const EventWord* word, const Chunk& chunk, std::uint64_t now,
+                      std::uint64_t limit, ScanCounts& counts);
 
 /// The unclocked run that begins at `word`: how many, and the step between them.
 struct UnclockedRun {
@@ -109,36 +120,23 @@ bool ScanSome(const ThreadStream& thread, std::uint32_t region_count, std::uint6
       at.chunk + 1 < thread.chunks.size() ? thread.chunks[at.chunk + 1].ticks : kNoTickLimit;
   const EventWord* const end = WrittenEnd(chunk);
   const EventWord* w = at.word == nullptr ? chunk.begin : at.word;
-  const auto left = static_cast<std::uint64_t>(end - w);
-  const EventWord* const stop = w + (left < budget ? left : budget);
+  const EventWord* const stop = w + std::min(static_cast<std::uint64_t>(end - w), budget);
   std::uint64_t now = at.now > chunk.ticks ? at.now : chunk.ticks;
   std::uint64_t step = at.step;
   std::uint64_t unclocked = at.unclocked;
   std::uint64_t function_events = 0;
-  std::uint64_t undefined = 0;
   decltype(auto) hot = HotPartOf(visitor);
   while (w < stop) {
     const EventWord word = *w;
     std::uint32_t region = static_cast<std::uint32_t>(word & kRegionMask);
     if (region >= kKindBase) [[unlikely]] {
-      // Its last words may be zeros, so it may reach beyond `end`.
-      const std::uint64_t words = SoundRecordWords(w, chunk.end);
-      if (words == 0) {
-        ++counts.bad_records;
-        w = end;
-        break;
-      }
-      if (IsClosed(word)) {
-        ++counts.records;
-        if (words > 1 && KindOf(word) < RecordKind::kDefineRegion) {
-          const std::uint64_t ticks = w[1] < limit ? w[1] : limit;
-          now = now > ticks ? now : ticks;
-        }
+      const RecordStep record = StepRecord(w, chunk, now, limit, counts);
+      if (record.words == 0) w = end;
+      if (record.sound) {
+        now = record.now;
         hot.Record(w, now);
-      } else {
-        ++counts.open_records;
       }
-      w += words;
+      w += record.words;
       continue;
     }
     const std::uint64_t low = TimeOf(word);
@@ -160,7 +158,7 @@ bool ScanSome(const ThreadStream& thread, std::uint32_t region_count, std::uint6
     }
     if (region == 0 || region >= region_count) [[unlikely]] {
       region = 0;
-      ++undefined;
+      ++counts.undefined_regions;
     }
     ++function_events;
     hot.Function(region, IsLeave(word), now);
@@ -168,7 +166,6 @@ bool ScanSome(const ThreadStream& thread, std::uint32_t region_count, std::uint6
   }
   if constexpr (HasHotPart<Visitor>) visitor.End(hot);
   counts.function_events += function_events;
-  counts.undefined_regions += undefined;
   at = w < end ? ScanPosition{at.chunk, w, now, step, unclocked}
                : ScanPosition{at.chunk + 1, nullptr, now, 0, 0};
   return true;
