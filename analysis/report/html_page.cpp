@@ -75,6 +75,13 @@ std::string Header(const ReportInput& input) {
   return text + FactsLine(input) + "</header>\n";
 }
 
+/// World rank of the host; -1: none.
+int HostOf(const Timeline& timeline) {
+  for (const TimelineRow& row : timeline.rows)
+    if (row.is_host) return row.rank;
+  return -1;
+}
+
 /// Timeline and bars, row by row side by side; below, curves on the timeline's axis.
 std::string Overview(const ReportInput& input, const ViewInput& views) {
   if (!HasRows(views.timeline)) return {};
@@ -91,9 +98,10 @@ std::string Overview(const ReportInput& input, const ViewInput& views) {
       PanelText({"Message load", "", false, {}, {}}, MessageLoadView(views));
   const std::string waited =
       PanelText({"Who was waited for", "side", true, {}, {}}, WaitedForView(views));
-  if (curves.empty() && waited.empty()) return text + StatesDetails(input.states, noun);
+  if (curves.empty() && waited.empty())
+    return text + StatesDetails(input.states, noun, HostOf(input.timeline));
   return text + "<div class=\"line\"><div class=\"main\">" + curves +
-         StatesDetails(input.states, noun) + "</div>" + waited + "</div>\n";
+         StatesDetails(input.states, noun, HostOf(input.timeline)) + "</div>" + waited + "</div>\n";
 }
 
 std::string Communication(const ReportInput& input, const ViewInput& views) {
@@ -129,8 +137,8 @@ std::string ReportPage(const ReportInput& input) {
           "</style></head><body>\n";
   if (input.mono) page += MonoPatterns();
   page += Header(input) + "<main>\n" + Overview(input, views) + Communication(input, views);
-  const std::string waits =
-      WaitsSection(input.waits, input.finding.culprit, NounFor(input.timeline));
+  const std::string waits = WaitsSection(input.waits, input.finding.culprit,
+                                         NounFor(input.timeline), HostOf(input.timeline));
   page += ProfileSection(input.profile) + waits + "</main>\n" + Quality(input);
   page +=
       "<script type=\"application/json\" id=\"hover\">" + HoverData(views) + "</script>\n<script>";

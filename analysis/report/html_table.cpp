@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "analysis/trace/demangle.h"
 #include "analysis/views/number.h"
 #include "analysis/views/svg_write.h"
 #include "analysis/views/table_access.h"
@@ -65,7 +66,7 @@ std::string PlaceCell(const Table& profile, const Row& row) {
 
 std::string FunctionCell(const Table& profile, const Row& row) {
   const std::string region = CellText(CellOf(profile, row, "region"));
-  const std::string shown = ShortenMiddle(region, kNameCharacters);
+  const std::string shown = ShortenMiddle(ShortName(region), kNameCharacters);
   std::string cell =
       fmt::format("<th scope=\"row\" data-v=\"{}\"><span class=\"name\"", EscapeMarkup(shown));
   if (shown != CleanUtf8(region))
@@ -90,9 +91,10 @@ std::string Words(std::string text) {
   return text;
 }
 
-std::string RankText(const Cell& cell, std::string_view noun) {
+std::string RankText(const Cell& cell, std::string_view noun, int host = -1) {
   const std::string text = CellText(cell);
   if (text.empty() || text[0] == '-') return "\u2013";
+  if (text == std::to_string(host)) return "host";
   const bool number = text.find_first_not_of("0123456789") == text.npos;
   return number ? fmt::format("{} {}", noun, text) : EscapeMarkup(text);
 }
@@ -131,7 +133,7 @@ std::string ProfileSection(const Table& profile) {
   return text + "</section>\n";
 }
 
-std::string WaitsSection(const Table& waits, int culprit, std::string_view noun) {
+std::string WaitsSection(const Table& waits, int culprit, std::string_view noun, int host) {
   if (waits.rows.empty()) return {};
   std::string text =
       "<section aria-labelledby=\"h-waits\"><header class=\"panel\"><h2 id=\"h-waits\">Longest "
@@ -152,9 +154,10 @@ std::string WaitsSection(const Table& waits, int culprit, std::string_view noun)
     text += fmt::format(
         "<tr><th scope=\"row\">{}</th><td>{}</td><td{}>{}</td><td title=\"{}\">{}</td>{}</tr>\n",
         EscapeMarkup(Words(CellText(CellOf(waits, row, "kind")))),
-        RankText(CellOf(waits, row, "waiter"), noun), accent ? " class=\"culprit\"" : "",
-        RankText(blamed, noun), EscapeMarkup(ShortenMiddle(region, kMostTitle)),
-        EscapeMarkup(ShortenMiddle(region, 48)), TimeCell(CellOf(waits, row, "seconds")));
+        RankText(CellOf(waits, row, "waiter"), noun, host), accent ? " class=\"culprit\"" : "",
+        RankText(blamed, noun, host), EscapeMarkup(ShortenMiddle(region, kMostTitle)),
+        EscapeMarkup(ShortenMiddle(ShortName(region), 48)),
+        TimeCell(CellOf(waits, row, "seconds")));
   }
   text += "</tbody></table>\n";
   if (rows.size() > kMostWaits)
@@ -164,7 +167,7 @@ std::string WaitsSection(const Table& waits, int culprit, std::string_view noun)
   return text + "</section>\n";
 }
 
-std::string StatesDetails(const Table& states, std::string_view noun) {
+std::string StatesDetails(const Table& states, std::string_view noun, int host) {
   if (states.rows.empty() || states.rows.size() > kMostNumbers) return {};
   constexpr std::pair<std::string_view, std::string_view> kColumns[] = {
       {"user_s", "user"}, {"system_s", "system"}, {"message_s", "message"}, {"idle_s", "idle"}};
@@ -176,7 +179,7 @@ std::string StatesDetails(const Table& states, std::string_view noun) {
     text += fmt::format("<th scope=\"col\" class=\"n\">{}</th>", title);
   text += "</tr></thead><tbody>\n";
   for (const Row& row : states.rows) {
-    text += "<tr><th scope=\"row\">" + RankText(CellOf(states, row, "rank"), noun) + "</th>";
+    text += "<tr><th scope=\"row\">" + RankText(CellOf(states, row, "rank"), noun, host) + "</th>";
     for (const auto& [name, title] : kColumns) text += TimeCell(CellOf(states, row, name));
     text += "</tr>\n";
   }

@@ -14,10 +14,10 @@ namespace stipple {
 std::string ProfileSection(const Table& profile);
 
 /// The ten longest waits; `culprit` is the world rank in the headline.
-std::string WaitsSection(const Table& waits, int culprit, std::string_view noun);
+std::string WaitsSection(const Table& waits, int culprit, std::string_view noun, int host);
 
 /// States per rank as numbers, folded; empty for very many ranks.
-std::string StatesDetails(const Table& states, std::string_view noun);
+std::string StatesDetails(const Table& states, std::string_view noun, int host);
 
 /// A matrix as numbers, folded; empty for very many ranks.
 std::string MatrixDetails(const Table& matrix, bool bytes);

@@ -10,6 +10,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "analysis/trace/demangle.h"
+
 namespace stipple {
 namespace {
 
@@ -79,7 +81,11 @@ std::string TableText(const Table& table) {
   for (const Column& c : table.columns) lines.front().push_back(c.name);
   for (const auto& row : table.rows) {
     lines.emplace_back();
-    for (const Cell& cell : row) lines.back().push_back(CellText(cell));
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      // Full names, with all parameters, are for programs: CSV and JSON have them.
+      const std::string text = CellText(row[c]);
+      lines.back().push_back(table.columns[c].name == "region" ? ShortName(text) : text);
+    }
   }
   for (const auto& line : lines) {
     widths.resize(line.size());

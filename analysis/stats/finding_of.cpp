@@ -2,6 +2,7 @@
 #include "analysis/stats/finding_of.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -9,6 +10,7 @@
 
 #include "analysis/stats/profile.h"
 #include "analysis/stats/states.h"
+#include "analysis/trace/demangle.h"
 
 namespace stipple {
 namespace {
@@ -103,7 +105,7 @@ std::vector<WaitedFor> WaitedForOf(const Trace& trace, const std::vector<Blame>&
     w.seconds += b.seconds;
     if (b.region != 0 && b.seconds > longest[b.culprit]) {
       longest[b.culprit] = b.seconds;
-      w.region = trace.regions()[b.region].name;
+      w.region = ShortName(trace.regions()[b.region].name);
     }
   }
   std::vector<WaitedFor> sorted;
@@ -135,14 +137,13 @@ void BlameOne(const Trace& trace, const std::vector<RankStates>& states,
       span += static_cast<double>(s.SpanNs()) * 1e-9;
   f.culprit = first.rank;
   f.sentence = words.Many(victims) + (victims.size() == 1 ? " spends " : " spend ") +
-               PercentText(waited, span) + " of the run waiting for " + words.One(first.rank) + ".";
-  std::string who = words.One(first.rank);
-  who[0] = static_cast<char>(who[0] == 't' ? 'T' : who[0] - 'a' + 'A');
+               PercentText(waited, span) + " of the run waiting for " + words.One(first.rank);
   const double mean = waited / static_cast<double>(victims.size());
-  if (!first.region.empty()) f.detail = who + " was mostly in " + first.region + " meanwhile; ";
+  if (!first.region.empty())
+    f.detail = words.One(first.rank) + " was mostly in " + first.region + " meanwhile; ";
   f.detail += "at most " + SecondsText(mean) + " of " +
               SecondsText(static_cast<double>(trace.SpanNs()) * 1e-9) + " could be gained.";
-  f.detail[0] = f.detail[0] == 'a' ? 'A' : f.detail[0];
+  f.detail[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(f.detail[0])));
 }
 
 /// The region in which the ranks compute most, and its share of the computing time.
@@ -158,7 +159,8 @@ std::pair<std::string, double> BusiestRegion(const Trace& trace, const Selection
   const auto most = std::ranges::max_element(sums);
   const double sum = std::accumulate(sums.begin(), sums.end(), 0.0);
   if (sum <= 0) return {};
-  return {trace.regions()[static_cast<std::size_t>(most - sums.begin())].name, *most / sum};
+  return {ShortName(trace.regions()[static_cast<std::size_t>(most - sums.begin())].name),
+          *most / sum};
 }
 
 void BlameNobody(const Trace& trace, const Selection& selection, const Totals& totals, Finding& f) {
@@ -167,7 +169,7 @@ void BlameNobody(const Trace& trace, const Selection& selection, const Totals& t
   f.sentence = "No " + words.Noun() +
                " waits for another: " + PercentText(totals.user, totals.span) +
                " of the time is computation";
-  f.sentence += region.empty() ? "." : ", most of it in " + region + ".";
+  f.sentence += region.empty() ? "" : ", most of it in " + region;
   if (!region.empty())
     f.detail = region + " itself takes " + PercentText(share, 1) + " of the computing time.";
 }
@@ -177,7 +179,7 @@ void BlameImbalance(const Trace& trace, const Totals& totals, Finding& f) {
   const WaitedFor& first = f.waited_for.front();
   f.sentence = "The " + words.Noun() + "s wait for each other " +
                PercentText(totals.idle, totals.span) + " of the run; the busiest computes " +
-               Number("%.2f", f.max_over_mean) + " times the mean.";
+               Number("%.2f", f.max_over_mean) + " times the mean";
   double blamed = 0;
   for (const WaitedFor& w : f.waited_for) blamed += w.seconds;
   f.detail = "Most is waited for " + words.One(first.rank) + ": " +
@@ -189,7 +191,7 @@ void BlameImbalance(const Trace& trace, const Totals& totals, Finding& f) {
 
 std::string PercentText(double part, double whole) {
   const double percent = whole > 0 ? 100 * part / whole : 0;
-  return Number(percent > 0 && percent < 9.95 ? "%.1f %%" : "%.0f %%", percent);
+  return Number(percent > 0 && percent < 9.95 ? "%.1f%%" : "%.0f%%", percent);
 }
 
 Finding FindingOf(const Analysis& analysis, const Selection& selection,
@@ -203,7 +205,7 @@ Finding FindingOf(const Analysis& analysis, const Selection& selection,
   double blamed = 0;
   for (const WaitedFor& w : f.waited_for) blamed += w.seconds;
   if (totals.span <= 0) {
-    f.sentence = "The archive holds no events.";
+    f.sentence = "The archive holds no events";
   } else if (f.waited_for.empty() || totals.idle < kNotableShare * totals.span) {
     BlameNobody(trace, selection, totals, f);
   } else if (f.waited_for.front().seconds >= kBlameShare * blamed) {

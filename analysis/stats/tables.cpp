@@ -11,6 +11,7 @@
 #include "analysis/stats/message_matrix.h"
 #include "analysis/stats/profile.h"
 #include "analysis/stats/states.h"
+#include "analysis/trace/demangle.h"
 
 namespace stipple {
 namespace {
@@ -24,7 +25,7 @@ TableAnswer Profile(const Trace& trace, const Selection& selection, bool per_ran
   const auto& first = rows.front();
   const std::string& region = std::get<std::string>(first[per_rank ? 1 : 0]);
   answer.headline = PercentText(std::get<double>(first.back()), sum) + " of the time is spent in " +
-                    region + " itself.";
+                    ShortName(region) + " itself.";
   return answer;
 }
 

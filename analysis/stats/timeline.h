@@ -54,6 +54,7 @@ struct Timeline {
   std::vector<TimelineMark> marks;
   std::vector<TimelineMessage> messages;  // at most as many as were asked for
   std::size_t message_count = 0;          // in the span, drawn or not
+  std::vector<double> sent_bytes;         // by column: handed to MPI in it
 };
 
 }  // namespace stipple

@@ -62,6 +62,13 @@ void AddMessages(const Analysis& analysis, const std::map<int, std::size_t>& row
     const auto receiver = row_of_rank.find(s.channel.receiver);
     if (sender == row_of_rank.end() || receiver == row_of_rank.end()) continue;
     ++timeline.message_count;
+    if (send_s >= timeline.begin_s) {
+      const double place = (send_s - timeline.begin_s) / (timeline.end_s - timeline.begin_s);
+      const auto column =
+          static_cast<std::size_t>(place * static_cast<double>(timeline.sent_bytes.size()));
+      timeline.sent_bytes[std::min(column, timeline.sent_bytes.size() - 1)] +=
+          static_cast<double>(s.bytes);
+    }
     if (timeline.messages.size() <= kDrawnMessages)
       timeline.messages.push_back({sender->second, receiver->second, send_s, receive_s, s.bytes});
   }
@@ -105,12 +112,18 @@ Timeline TimelineOf(const Analysis& analysis, double begin_s, double end_s, std:
   for (TimelineRow& row : timeline.rows)
     for (StateShares& shares : row.columns)
       for (float& share : shares) share = std::clamp(share, 0.0F, 1.0F);
+  timeline.sent_bytes.resize(columns);
   AddMessages(analysis, row_of_rank, timeline);
   AddMarks(analysis, timeline);
   return timeline;
 }
 
 std::pair<double, double> WorstPeriod(const Timeline& whole, std::size_t parts) {
+  const auto messages = [&whole](std::size_t from, std::size_t count) {
+    const auto begin = whole.sent_bytes.begin() + static_cast<std::ptrdiff_t>(from);
+    return std::any_of(begin, begin + static_cast<std::ptrdiff_t>(count),
+                       [](double bytes) { return bytes > 0; });
+  };
   const std::size_t columns = whole.rows.empty() ? 0 : whole.rows.front().columns.size();
   const std::size_t width = std::max<std::size_t>(1, columns / parts);
   const double column_s =
@@ -123,7 +136,7 @@ std::pair<double, double> WorstPeriod(const Timeline& whole, std::size_t parts) 
     for (const TimelineRow& row : whole.rows)
       for (std::size_t c = begin; c < begin + width; ++c)
         idle += static_cast<double>(row.columns[c][static_cast<std::size_t>(State::kIdle)]);
-    if (idle <= most * 1.001) continue;
+    if (idle <= most * 1.001 || !messages(begin, width)) continue;
     most = idle;
     worst = begin;
   }

@@ -18,7 +18,7 @@ inline constexpr std::size_t kDrawnMessages = 400;
 Timeline TimelineOf(const Analysis& analysis, double begin_s, double end_s, std::size_t columns);
 
 /// Begin and end of the part of the run (one of `parts` equal ones and their neighbourhood) in
-/// which the ranks waited most; the middle one when nobody waits.
+/// which messages were sent and the ranks waited most; the middle one when nobody waits.
 std::pair<double, double> WorstPeriod(const Timeline& whole, std::size_t parts);
 
 }  // namespace stipple

@@ -12,6 +12,11 @@ namespace stipple {
 /// "work"; any other name as it is.
 std::string Demangle(std::string_view linkage_name);
 
+/// For headlines and tables: without return type, parameters, template arguments and unnamed
+/// namespaces. "void a::(anonymous namespace)::F<int>(int) const" -> "a::F<..>". Two overloads have
+/// the same one.
+std::string ShortName(std::string_view demangled);
+
 }  // namespace stipple
 
 #endif

@@ -139,19 +139,15 @@ Layer BottomAxis(const TimeAxis& axis) {
 /// Bytes sent per second in each column, each message charged when its send was entered.
 Curve BytesPerSecond(const Timeline& timeline, std::size_t columns) {
   Curve bytes(columns, 0);
-  const double span = timeline.end_s - timeline.begin_s;
-  for (const TimelineMessage& message : timeline.messages) {
-    const double place = (message.send_s - timeline.begin_s) / span * static_cast<double>(columns);
-    const auto column = static_cast<std::size_t>(std::max(0.0, place));
-    bytes[std::min(column, columns - 1)] += static_cast<double>(message.bytes);
-  }
-  for (double& value : bytes) value *= static_cast<double>(columns) / span;
+  const std::size_t given = timeline.sent_bytes.size();
+  for (std::size_t i = 0; i < given; ++i) bytes[i * columns / given] += timeline.sent_bytes[i];
+  for (double& value : bytes)
+    value *= static_cast<double>(columns) / (timeline.end_s - timeline.begin_s);
   return bytes;
 }
 
-bool HasAllMessages(const Timeline* timeline) {
-  return HasRows(timeline) && timeline->message_count > 0 &&
-         timeline->messages.size() == timeline->message_count &&
+bool HasMessages(const Timeline* timeline) {
+  return HasRows(timeline) && timeline->message_count > 0 && !timeline->sent_bytes.empty() &&
          timeline->end_s > timeline->begin_s;
 }
 
@@ -164,7 +160,7 @@ Scene UtilisationView(const ViewInput& input) {
     return scene;
   const Utilisation load = UtilisationOf(*input.timeline, kCurveColumns);
   const CurveFrame frame{MainAxis(input), 1};
-  const bool last = !HasAllMessages(input.timeline);
+  const bool last = !HasMessages(input.timeline);
   scene.height = kCurveTop + kCurveHeight + (last ? kAxisHeight : 8);
   scene.title = "Processor utilisation";
   scene.description = fmt::format(
@@ -187,7 +183,7 @@ Scene UtilisationView(const ViewInput& input) {
 
 Scene MessageLoadView(const ViewInput& input) {
   Scene scene{.name = "message-load", .width = kMainWidth};
-  if (!HasAllMessages(input.timeline)) return scene;
+  if (!HasMessages(input.timeline)) return scene;
   const Window window = WindowFor(*input.timeline, kCurveColumns);
   const Curve load = Smoothed(BytesPerSecond(*input.timeline, kCurveColumns), window.columns);
   const double largest = std::max(1.0, *std::ranges::max_element(load));

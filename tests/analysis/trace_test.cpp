@@ -44,6 +44,23 @@ TEST(Demangle, GivesTheNamesThatPeopleWrite) {
   EXPECT_EQ(Demangle(""), "");
 }
 
+TEST(Demangle, ShortNamesLeaveOutWhatTheReaderNeedsNot) {
+  EXPECT_EQ(ShortName("main"), "main");
+  EXPECT_EQ(ShortName("void a::(anonymous namespace)::F<int>(std::vector<int> const&) const"),
+            "a::F<..>");
+  EXPECT_EQ(ShortName("std::vector<int, std::allocator<int> >::push_back(int&&)"),
+            "std::vector<..>::push_back");
+  EXPECT_EQ(ShortName("A::operator()(int) const"), "A::operator()");
+  EXPECT_EQ(ShortName("std::ostream& operator<< <char>(std::ostream&, char)"), "operator<<<..>");
+  EXPECT_EQ(ShortName("A::operator->() const"), "A::operator->");
+  EXPECT_EQ(ShortName("operator new(unsigned long)"), "operator new");
+  EXPECT_EQ(ShortName("main::{lambda(int, int)#1}::operator()(int, int) const"),
+            "main::{lambda(int, int)#1}::operator()");
+  EXPECT_EQ(ShortName("solver::step"), "solver::step");
+  EXPECT_EQ(ShortName(""), "");
+  EXPECT_EQ(ShortName("("), "(");
+}
+
 TEST(Trace, TimesGoOnOverChunksAndOverTheEndOf40Bits) {
   constexpr std::uint64_t kWrap = std::uint64_t{1} << 40;
   StreamWriter s = Program();

@@ -106,8 +106,10 @@ TimelineRow RowOf(int rank, bool host) {
   return {host ? "host" : std::to_string(rank), rank, host, {}};
 }
 
+constexpr std::size_t kLoadColumns = 600;
+
 Timeline EmptyTimeline(int nodes, bool host, double begin, double end) {
-  Timeline timeline{begin, end, {}, {}, {}, 0};
+  Timeline timeline{begin, end, {}, {}, {}, 0, std::vector<double>(kLoadColumns)};
   for (int rank = 0; rank < nodes; ++rank) timeline.rows.push_back(RowOf(rank, false));
   if (host) timeline.rows.push_back(RowOf(nodes, true));
   return timeline;
@@ -115,6 +117,9 @@ Timeline EmptyTimeline(int nodes, bool host, double begin, double end) {
 
 void AddMessage(Timeline& timeline, std::size_t from, std::size_t to, double send, double receive) {
   ++timeline.message_count;
+  const double place = (send - timeline.begin_s) / (timeline.end_s - timeline.begin_s);
+  if (place >= 0 && place < 1)
+    timeline.sent_bytes[static_cast<std::size_t>(place * kLoadColumns)] += 900;
   if (send >= timeline.begin_s && receive <= timeline.end_s)
     timeline.messages.push_back({from, to, send, receive, 900});
 }
