@@ -22,6 +22,9 @@ constexpr double kBlameShare = 0.4;
 // Who lost less than this share of what the one who lost most did is not listed.
 constexpr double kVictimShare = 0.1;
 
+// More ranks or spans of ranks than this are counted, not listed.
+constexpr std::size_t kMostListed = 6;
+
 std::string Number(const char* format, double value) {
   char text[64];
   std::snprintf(text, sizeof(text), format, value);
@@ -44,21 +47,27 @@ class Words {
     return trace_.IsHost(rank) ? "the host" : noun_ + " " + std::to_string(rank);
   }
   std::string Noun() const { return noun_; }
-  /// "Ranks 1-3, 7 and the host"; whether it is more than one is told to the caller.
+  /// "Ranks 1-3, 7 and the host"; "19 ranks" when that would be a long list.
   std::string Many(std::vector<int> ranks) const {
     std::ranges::sort(ranks);
+    const std::size_t count = ranks.size();
     const bool host = std::erase_if(ranks, [this](int r) { return trace_.IsHost(r); }) > 0;
-    std::string list;
+    std::vector<std::string> parts;
     for (std::size_t i = 0; i < ranks.size();) {
       std::size_t j = i;
       while (j + 1 < ranks.size() && ranks[j + 1] == ranks[j] + 1) ++j;
-      list += (list.empty() ? " " : ", ") + std::to_string(ranks[i]);
-      if (j > i) list += (j == i + 1 ? ", " : "-") + std::to_string(ranks[j]);
+      if (j == i + 1) j = i;  // two are two, not a span
+      parts.push_back(std::to_string(ranks[i]));
+      if (j > i) parts.back() += "-" + std::to_string(ranks[j]);
       i = j + 1;
     }
-    if (ranks.empty()) return "The host";
-    const std::string noun = trace_.HasHost() ? "Node" : "Rank";
-    return noun + (ranks.size() > 1 ? "s" : "") + list + (host ? " and the host" : "");
+    if (parts.empty()) return "The host";
+    if (host) parts.emplace_back("the host");
+    if (parts.size() > kMostListed) return std::to_string(count) + " " + noun_ + "s";
+    std::string list = parts.front();
+    for (std::size_t i = 1; i < parts.size(); ++i)
+      list += (i + 1 == parts.size() ? " and " : ", ") + parts[i];
+    return (trace_.HasHost() ? "Node" : "Rank") + std::string(ranks.size() > 1 ? "s " : " ") + list;
   }
 
  private:
@@ -72,9 +81,10 @@ struct Totals {
   double idle = 0;
 };
 
-Totals Sum(const std::vector<RankStates>& states) {
+Totals Sum(const Trace& trace, const std::vector<RankStates>& states) {
   Totals t;
   for (const RankStates& s : states) {
+    if (trace.IsHost(s.rank) && states.size() > 1) continue;
     t.span += static_cast<double>(s.SpanNs()) * 1e-9;
     t.user += static_cast<double>(s.user_ns) * 1e-9;
     t.idle += static_cast<double>(s.idle_ns) * 1e-9;
@@ -195,10 +205,13 @@ std::string PercentText(double part, double whole) {
 }
 
 Finding FindingOf(const Analysis& analysis, const Selection& selection,
-                  const std::vector<Blame>& blames) {
+                  const std::vector<Blame>& all_blames) {
   const Trace& trace = analysis.trace;
+  // A host is there to wait for requests: nothing is lost by that.
+  std::vector<Blame> blames = all_blames;
+  std::erase_if(blames, [&trace](const Blame& b) { return trace.IsHost(b.waiter); });
   const std::vector<RankStates> states = StatesOf(analysis, selection);
-  const Totals totals = Sum(states);
+  const Totals totals = Sum(trace, states);
   Finding f;
   f.waited_for = WaitedForOf(trace, blames);
   f.max_over_mean = MaxOverMean(trace, states);

@@ -12,7 +12,7 @@
 
 namespace stipple {
 
-/// "37 %"; of nothing: "0 %".
+/// "37%"; of nothing: "0%".
 std::string PercentText(double part, double whole);
 
 /// Three sentences are possible: most waiting is for one rank; the ranks wait, but for no one in

@@ -193,10 +193,8 @@ class Charger {
   void ChargeAll(const Selection& selection) {
     for (const auto& [rank, spans] : spans_) {
       if (!selection.HasRank(rank)) continue;
-      for (const WaitSpan& s : spans) {
-        chain_ = {rank};
+      for (const WaitSpan& s : spans)
         Charge({rank, s.kind}, s.partner, selection.Clamp(s.begin_ns), selection.Clamp(s.end_ns));
-      }
     }
   }
 
@@ -216,30 +214,45 @@ class Charger {
     pieces[culprit].push_back({begin_ns, end_ns, victim.kind});
   }
 
-  /// [begin, end) of the victim's wait was for `rank`: where that rank waited itself, the one that
-  /// it waited for is meant. A chain that comes back to a rank in it ends there.
+  /// [begin, end) of the victim's wait ended when `rank` arrived: goes back from there in time,
+  /// along what that rank did and, where it waited itself, along the one that it waited for last.
+  /// So of several that were late, the one that was late last is charged: had it been in time,
+  /// nobody could have gone on earlier than the one before it.
   void Charge(const Victim& victim, std::int32_t rank, std::int64_t begin_ns, std::int64_t end_ns) {
-    const auto found = spans_.find(rank);
-    const bool closed = std::ranges::find(chain_, rank) != chain_.end();
-    if (found == spans_.end() || closed || chain_.size() > kLongestChain)
-      return ChargeRank(victim, rank, begin_ns, end_ns);
-    const std::vector<WaitSpan>& spans = found->second;
-    chain_.push_back(rank);
-    auto s = std::ranges::upper_bound(spans, begin_ns, {}, &WaitSpan::end_ns);
-    for (; s != spans.end() && s->begin_ns < end_ns; ++s) {
-      ChargeRank(victim, rank, begin_ns, s->begin_ns);
-      begin_ns = std::max(begin_ns, s->begin_ns);
-      const std::int64_t until_ns = std::min(end_ns, s->end_ns);
-      Charge(victim, s->partner, begin_ns, until_ns);
-      begin_ns = until_ns;
+    std::vector<std::int32_t> chain = {victim.rank};  // ranks seen at end_ns
+    while (end_ns > begin_ns) {
+      const WaitSpan* wait = LastWait(rank, end_ns);
+      const std::int64_t waited_until_ns =
+          wait == nullptr ? begin_ns : std::clamp(wait->end_ns, begin_ns, end_ns);
+      if (waited_until_ns < end_ns) {
+        ChargeRank(victim, rank, waited_until_ns, end_ns);
+        end_ns = waited_until_ns;
+        chain.clear();
+        continue;
+      }
+      // A chain that comes back to a rank in it ends there.
+      chain.push_back(rank);
+      if (std::ranges::find(chain, wait->partner) == chain.end() && chain.size() < kLongestChain) {
+        rank = wait->partner;
+        continue;
+      }
+      const std::int64_t waited_from_ns = std::max(begin_ns, wait->begin_ns);
+      ChargeRank(victim, wait->partner, waited_from_ns, end_ns);
+      end_ns = waited_from_ns;
+      chain.clear();
     }
-    chain_.pop_back();
-    ChargeRank(victim, rank, begin_ns, end_ns);
+  }
+
+  /// The last wait of `rank` that began before `time_ns`; null if there is none.
+  const WaitSpan* LastWait(std::int32_t rank, std::int64_t time_ns) const {
+    const auto found = spans_.find(rank);
+    if (found == spans_.end()) return nullptr;
+    const auto after = std::ranges::lower_bound(found->second, time_ns, {}, &WaitSpan::begin_ns);
+    return after == found->second.begin() ? nullptr : &*std::prev(after);
   }
 
   static constexpr std::size_t kLongestChain = 64;
   std::map<std::int32_t, std::vector<WaitSpan>> spans_;  // by rank, in order of time
-  std::vector<std::int32_t> chain_;
 };
 
 /// In which region a culprit was while others waited: time weighted by how many did.

@@ -251,8 +251,37 @@ TEST(Waits, ChainLeadsToTheRankThatBeganIt) {
   EXPECT_NEAR(for_1, 100e-9, 1e-12);
   const Finding finding = FindingOf(w.trace);
   EXPECT_EQ(finding.culprit, 0);
-  EXPECT_NE(finding.sentence.find("Ranks 1, 2 spend"), std::string::npos) << finding.sentence;
+  EXPECT_NE(finding.sentence.find("Ranks 1 and 2 spend"), std::string::npos) << finding.sentence;
   EXPECT_NE(finding.detail.find("work"), std::string::npos) << finding.detail;
+}
+
+// Rank 0 collects from 1, which is ready at 2000, and then from 2, which is ready at 3000; rank 1
+// waits for all in the barrier. Had 1 been earlier it would have gained nothing.
+TEST(Waits, OfSeveralThatWereLateTheLastIsCharged) {
+  std::vector<Rank> ranks{Rank(0, 3), Rank(1, 3), Rank(2, 3)};
+  ranks[0].Receive(1, 1, 1100, 2010);
+  ranks[0].Receive(2, 1, 2020, 3010);
+  ranks[0].Barrier(3100, 3120);
+  ranks[0].End(4000);
+  ranks[1].Call(kWork, 1010, 1990);
+  ranks[1].Send(0, 1, 2000, 2005);
+  ranks[1].Barrier(2100, 3120);
+  ranks[1].End(4000);
+  ranks[2].Call(kHelp, 1010, 2990);
+  ranks[2].Send(0, 1, 3000, 3005);
+  ranks[2].Barrier(3050, 3120);
+  ranks[2].End(4000);
+  const Written w(ranks);
+  const Analysis analysis(w.trace);
+  std::map<std::pair<int, int>, double> ns;
+  for (const Blame& b : BlameOf(w.trace, analysis.mpi, analysis.waits, {}))
+    ns[{b.waiter, b.culprit}] += b.seconds * 1e9;
+  EXPECT_NEAR((ns[{1, 2}]), 900, 1e-3);  // 2100 to 3000
+  EXPECT_NEAR((ns[{1, 0}]), 100, 1e-3);  // 3000 to 3100
+  EXPECT_EQ((ns[{1, 1}]), 0);
+  EXPECT_NEAR((ns[{0, 1}]), 900, 1e-3);
+  EXPECT_NEAR((ns[{0, 2}]), 980, 1e-3);
+  EXPECT_EQ(FindingOf(w.trace).culprit, 2);
 }
 
 TEST(Waits, SendThatReturnedBeforeTheReceiveWasPostedDidNotWait) {
@@ -283,7 +312,7 @@ TEST(Finding, SerialRunIsComputation) {
   TemporaryArchive archive;
   archive.Add(s);
   EXPECT_EQ(FindingOf(Trace::Open(archive.path())).sentence,
-            "No rank waits for another: 100 % of the time is computation, most of it in work.");
+            "No rank waits for another: 100% of the time is computation, most of it in work");
 }
 
 TEST(Timeline, ColumnsHoldTheStatesExactly) {
