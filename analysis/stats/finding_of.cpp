@@ -22,6 +22,8 @@ constexpr double kBlameShare = 0.4;
 // Who lost less than this share of what the one who lost most did is not listed.
 constexpr double kVictimShare = 0.1;
 
+// Who computed at least this share of what the culprit did is named with it.
+constexpr double kAsLongShare = 0.95;
 // More ranks or spans of ranks than this are counted, not listed.
 constexpr std::size_t kMostListed = 6;
 
@@ -37,6 +39,11 @@ std::string SecondsText(double seconds) {
                         : Number("%.3g s", seconds);
 }
 
+std::string Capitalised(std::string text) {
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
+}
+
 /// Numbers of a run as text.
 class Words {
  public:
@@ -47,7 +54,7 @@ class Words {
     return trace_.IsHost(rank) ? "the host" : noun_ + " " + std::to_string(rank);
   }
   std::string Noun() const { return noun_; }
-  /// "Ranks 1-3, 7 and the host"; "19 ranks" when that would be a long list.
+  /// "ranks 1-3, 7 and the host"; "19 ranks" when that would be a long list.
   std::string Many(std::vector<int> ranks) const {
     std::ranges::sort(ranks);
     const std::size_t count = ranks.size();
@@ -61,13 +68,13 @@ class Words {
       if (j > i) parts.back() += "-" + std::to_string(ranks[j]);
       i = j + 1;
     }
-    if (parts.empty()) return "The host";
+    if (parts.empty()) return "the host";
     if (host) parts.emplace_back("the host");
     if (parts.size() > kMostListed) return std::to_string(count) + " " + noun_ + "s";
     std::string list = parts.front();
     for (std::size_t i = 1; i < parts.size(); ++i)
       list += (i + 1 == parts.size() ? " and " : ", ") + parts[i];
-    return (trace_.HasHost() ? "Node" : "Rank") + std::string(ranks.size() > 1 ? "s " : " ") + list;
+    return noun_ + (ranks.size() > 1 ? "s " : " ") + list;
   }
 
  private:
@@ -124,6 +131,23 @@ std::vector<WaitedFor> WaitedForOf(const Trace& trace, const std::vector<Blame>&
   return sorted;
 }
 
+/// The culprit, and those that computed as long as it did: had it alone been faster, they would
+/// have been waited for.
+std::vector<int> CulpritsOf(const Trace& trace, const std::vector<RankStates>& states, int culprit,
+                            const std::vector<int>& victims) {
+  std::int64_t user_ns = 0;
+  for (const RankStates& s : states)
+    if (s.rank == culprit) user_ns = s.user_ns;
+  std::vector<int> culprits = {culprit};
+  if (trace.IsHost(culprit)) return culprits;
+  for (const RankStates& s : states)
+    if (s.rank != culprit && !trace.IsHost(s.rank) &&
+        std::ranges::find(victims, s.rank) == victims.end() &&
+        static_cast<double>(s.user_ns) >= kAsLongShare * static_cast<double>(user_ns))
+      culprits.push_back(s.rank);
+  return culprits;
+}
+
 /// One rank holds the others up.
 void BlameOne(const Trace& trace, const std::vector<RankStates>& states,
               const std::vector<Blame>& blames, Finding& f) {
@@ -145,15 +169,17 @@ void BlameOne(const Trace& trace, const std::vector<RankStates>& states,
   for (const RankStates& s : states)
     if (std::ranges::find(victims, s.rank) != victims.end())
       span += static_cast<double>(s.SpanNs()) * 1e-9;
+  const std::vector<int> culprits = CulpritsOf(trace, states, first.rank, victims);
   f.culprit = first.rank;
-  f.sentence = words.Many(victims) + (victims.size() == 1 ? " spends " : " spend ") +
-               PercentText(waited, span) + " of the run waiting for " + words.One(first.rank);
-  const double mean = waited / static_cast<double>(victims.size());
+  f.sentence = Capitalised(words.Many(victims)) + (victims.size() == 1 ? " spends " : " spend ") +
+               PercentText(waited, span) + " of the run waiting for " + words.Many(culprits);
   if (!first.region.empty())
-    f.detail = words.One(first.rank) + " was mostly in " + first.region + " meanwhile; ";
-  f.detail += "at most " + SecondsText(mean) + " of " +
-              SecondsText(static_cast<double>(trace.SpanNs()) * 1e-9) + " could be gained.";
-  f.detail[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(f.detail[0])));
+    f.detail = words.Many(culprits) + (culprits.size() == 1 ? " was" : " were") + " mostly in " +
+               first.region + " meanwhile; ";
+  const double mean = waited / static_cast<double>(victims.size());
+  f.detail =
+      Capitalised(f.detail + "at most " + SecondsText(mean) + " of " +
+                  SecondsText(static_cast<double>(trace.SpanNs()) * 1e-9) + " could be gained.");
 }
 
 /// The region in which the ranks compute most, and its share of the computing time.
