@@ -69,18 +69,22 @@ bool LooksLikeArchive(const fs::path& path) {
   return !error;
 }
 
-void MakeArchive(const fs::path& path, bool overwrite) {
+/// False if no archive can be written there: said in one line, and no reason not to run the
+/// command.
+bool MakeArchive(const fs::path& path, bool overwrite) {
+  std::error_code absent;
   std::error_code error;
-  if (fs::exists(fs::symlink_status(path, error))) {
+  if (fs::exists(fs::symlink_status(path, absent))) {
     if (!overwrite)
       throw InputError(path.string(), "exists; --overwrite replaces it, -o names another");
     if (!LooksLikeArchive(path))
       throw InputError(path.string(), "is not an archive, so --overwrite leaves it alone");
     fs::remove_all(path, error);
-    if (error) throw InputError(path.string(), error.message());
   }
-  fs::create_directories(path, error);
-  if (error) throw InputError(path.string(), error.message());
+  if (!error) fs::create_directories(path, error);
+  if (error)
+    fmt::print(stderr, "stipple: nothing is recorded: {}: {}\n", path.string(), error.message());
+  return !error;
 }
 
 /// The libraries to preload, before those that the user preloads.
@@ -103,9 +107,9 @@ bool IsOpenMpi(const std::string& launcher) {
                      version->find("OpenRTE") != std::string::npos);
 }
 
-/// Sets the environment of the command; returns the command, with the launcher told to pass it on.
-std::vector<std::string> Prepare(const RunOptions& options) {
-  const std::string preload = Preload();
+/// Sets the environment of the command, with the libraries in `preload`; returns the command, with
+/// the launcher told to pass it on.
+std::vector<std::string> Prepare(const RunOptions& options, const std::string& preload) {
   const char* own = std::getenv("LD_PRELOAD");
   const std::string all = own == nullptr || *own == '\0' ? preload : preload + ":" + own;
   // Asked before the runtime is preloaded: the launcher's version is not to be recorded.
@@ -172,9 +176,9 @@ int RunRun(const Arguments& arguments) {
     options->archive = fs::path(program).filename().string() + ".stipple";
   }
   while (options->archive.size() > 1 && options->archive.back() == '/') options->archive.pop_back();
-  const std::vector<std::string> command = Prepare(*options);
-  MakeArchive(options->archive, options->overwrite);
-  const int status = RunToEnd(command);
+  const std::string preload = Preload();
+  if (!MakeArchive(options->archive, options->overwrite)) return RunToEnd(options->command);
+  const int status = RunToEnd(Prepare(*options, preload));
   Summarise(*options, status);
   return status;
 }

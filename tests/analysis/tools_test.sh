@@ -41,6 +41,10 @@ expect 143 "signal" "$stipple" run -o none.stipple -- sh -c 'kill -TERM $$'
 expect 127 "no program" "$stipple" run -o none.stipple -- ./none
 [ -e none.stipple ] && fail "an empty archive was left behind"
 
+# No place for an archive: the command runs all the same, and one line says so.
+touch file
+expect 3 "no place" "$stipple" run -o file/x.stipple -- sh -c 'exit 3'; has err "nothing is recorded: file/x.stipple: Not a dir"
+
 flags=$("$stipple" flags g++ 2>/dev/null) || { echo "no plugin for g++: the rest is skipped"; exit "$failures"; }
 cat >app.cpp <<'END'
 #include <unistd.h>
