@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "raytracer/errors.h"
 
 #include <fmt/format.h>

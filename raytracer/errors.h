@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How the ray tracer says no: unusable input and wrong options end the program with exit 2.
 #ifndef STIPPLE_RAYTRACER_ERRORS_H
 #define STIPPLE_RAYTRACER_ERRORS_H

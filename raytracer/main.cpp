@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A ray tracer on MPI ranks; the program that stipple's exemplar traces.
 #include <fmt/format.h>
 #include <mpi.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "raytracer/options.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What users type: one row per option. Parser, --help and the messages about unknown values derive
 // from the rows.
 #ifndef STIPPLE_RAYTRACER_OPTIONS_H

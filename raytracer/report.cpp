@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "raytracer/report.h"
 
 #include <fmt/format.h>

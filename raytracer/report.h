@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The short answer at the end of a run, and the numbers for scripts.
 #ifndef STIPPLE_RAYTRACER_REPORT_H
 #define STIPPLE_RAYTRACER_REPORT_H

@@ -37,7 +37,7 @@ Table Matrix(const Analysis& analysis, const Selection& selection, std::string n
   Table table{std::move(name), TableShape::kMatrix, {{"sender"}}, {}};
   for (const int rank : ranks) table.columns.push_back({trace.RankName(rank)});
   for (std::size_t row = 0; row < ranks.size(); ++row) {
-    std::vector<Cell> cells{trace.RankName(ranks[row])};
+    std::vector<Cell> cells = RowOf(trace.RankName(ranks[row]));
     for (std::size_t column = 0; column < ranks.size(); ++column)
       cells.emplace_back(sums[row * ranks.size() + column]);
     table.rows.push_back(std::move(cells));

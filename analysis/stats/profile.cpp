@@ -160,11 +160,10 @@ Table ProfileTable(const Trace& trace, const Selection& selection, bool per_rank
   for (const auto& [ignored, rank, r] : order) {
     const Region& region = trace.regions()[r];
     const RegionTime& time = by_rank[rank][r];
-    std::vector<Cell> row;
-    if (per_rank) row.emplace_back(std::int64_t{rank});
-    row.insert(row.end(), {Cell(region.name), Cell(region.file), Cell(std::int64_t{region.line}),
-                           Cell(static_cast<std::int64_t>(time.calls)),
-                           Cell(Seconds(time.inclusive_ns)), Cell(Seconds(time.exclusive_ns))});
+    std::vector<Cell> row = RowOf(region.name, region.file, std::int64_t{region.line},
+                                  static_cast<std::int64_t>(time.calls), Seconds(time.inclusive_ns),
+                                  Seconds(time.exclusive_ns));
+    if (per_rank) row.insert(row.begin(), std::int64_t{rank});
     table.rows.push_back(std::move(row));
   }
   return table;

@@ -38,14 +38,9 @@ Table StatesTable(const std::vector<RankStates>& states) {
               {}};
   const auto seconds = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-9; };
   for (const RankStates& s : states) {
-    std::vector<Cell> row;
-    row.emplace_back(std::int64_t{s.rank});
-    row.emplace_back(seconds(s.user_ns));
-    row.emplace_back();
-    if (s.system_ns) row.back() = seconds(*s.system_ns);
-    row.emplace_back(seconds(s.message_ns));
-    row.emplace_back(seconds(s.idle_ns));
-    table.rows.push_back(std::move(row));
+    table.rows.push_back(RowOf(std::int64_t{s.rank}, seconds(s.user_ns),
+                               s.system_ns ? Cell(seconds(*s.system_ns)) : Cell(),
+                               seconds(s.message_ns), seconds(s.idle_ns)));
   }
   return table;
 }

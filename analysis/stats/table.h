@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -13,6 +14,16 @@ namespace stipple {
 
 /// One value; std::monostate is "was not recorded" (JSON null, never 0).
 using Cell = std::variant<std::monostate, std::int64_t, double, std::string>;
+
+/// A row from its values. They are made in place: of a braced list of cells GCC 12 believes that it
+/// copies what was never set.
+template <class... Values>
+std::vector<Cell> RowOf(Values&&... values) {
+  std::vector<Cell> row;
+  row.reserve(sizeof...(values));
+  (row.emplace_back(std::forward<Values>(values)), ...);
+  return row;
+}
 
 /// What a column holds. The name is the JSON key and carries the unit: "exclusive_s", "bytes".
 struct Column {

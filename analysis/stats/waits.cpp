@@ -365,9 +365,9 @@ Table WaitsTable(const Trace& trace, const std::vector<Blame>& blames) {
   Table table{
       "waits", TableShape::kRows, {{"kind"}, {"waiter"}, {"culprit"}, {"seconds"}, {"region"}}, {}};
   for (const Blame& b : blames)
-    table.rows.push_back({std::string(NameOf(b.kind)), std::int64_t{b.waiter},
-                          std::int64_t{b.culprit}, b.seconds,
-                          b.region == 0 ? Cell() : Cell(trace.regions()[b.region].name)});
+    table.rows.push_back(RowOf(std::string(NameOf(b.kind)), std::int64_t{b.waiter},
+                               std::int64_t{b.culprit}, b.seconds,
+                               b.region == 0 ? Cell() : Cell(trace.regions()[b.region].name)));
   return table;
 }
 

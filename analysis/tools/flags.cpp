@@ -62,12 +62,16 @@ std::string FlagsOf(const fs::path& plugin, bool link, bool is_static) {
   if (gcc) {  // with -flto functions are compiled, and instrumented, when linking
     flags = fmt::format("-fplugin={}", plugin.string());
   } else if (!link) {
-    flags = fmt::format("-fplugin={0} -fpass-plugin={0} -Wno-unused-command-line-argument",
-                        plugin.string());
+    // clang forgets files and lines unless asked for debug information or remarks. -g... would
+    // replace the user's own -g; remarks of passes named so, of which there are none, change no
+    // byte of the object.
+    flags = fmt::format(
+        "-fplugin={0} -fpass-plugin={0} -Rpass=stipple -Wno-unused-command-line-argument",
+        plugin.string());
   }
   if (is_static)
-    flags += fmt::format("{}-Wl,-u,stipple_register -L{} -lstipple", flags.empty() ? "" : " ",
-                         LibraryDirectory());
+    flags += fmt::format("{}-Wl,-u,stipple_register,-u,stipple_record_mark -L{} -lstipple",
+                         flags.empty() ? "" : " ", LibraryDirectory());
   return flags;
 }
 

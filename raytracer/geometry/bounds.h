@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Bounds: an axis-aligned box, and the test of a ray against it.
 #ifndef STIPPLE_RAYTRACER_GEOMETRY_BOUNDS_H
 #define STIPPLE_RAYTRACER_GEOMETRY_BOUNDS_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The bounding hierarchy: a binary tree of bounds over all objects, so that a ray meets few of
 // them.
 #ifndef STIPPLE_RAYTRACER_GEOMETRY_BVH_H

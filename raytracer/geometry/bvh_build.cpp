@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Top-down construction: at each node the objects' centres are sorted into bins along each axis,
 // and the boundary between two bins with the smallest expected cost (area x objects, on both sides)
 // splits the node.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The two questions a ray asks. Both walk the tree with a small stack, the nearer child first;
 // boxes that begin behind the best hit so far are skipped.
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where a ray meets one primitive. Inline: the traversal of the BVH is the only hot caller.
 //
 // Each function returns the smallest distance t with 0 < t that lies on the primitive, or infinity.

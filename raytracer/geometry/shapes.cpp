@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "raytracer/geometry/shapes.h"
 
 #include <array>

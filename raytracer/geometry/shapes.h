@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a ray can hit: the primitives of a scene, stored by kind.
 //
 // An *object* is one primitive as the scene file counts them; its number is its position in the

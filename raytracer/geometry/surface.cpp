@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "raytracer/geometry/surface.h"
 
 namespace stipple::raytracer {

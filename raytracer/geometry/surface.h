@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Normals where a ray met an object.
 #ifndef STIPPLE_RAYTRACER_GEOMETRY_SURFACE_H
 #define STIPPLE_RAYTRACER_GEOMETRY_SURFACE_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Vectors of three doubles: points, directions and colours of the ray tracer. Everything here is
 // inline and small.
 #ifndef STIPPLE_RAYTRACER_GEOMETRY_VEC_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "raytracer/image/png_file.h"
 
 #include <fmt/format.h>

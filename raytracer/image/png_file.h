@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pictures on disk.
 #ifndef STIPPLE_RAYTRACER_IMAGE_PNG_FILE_H
 #define STIPPLE_RAYTRACER_IMAGE_PNG_FILE_H

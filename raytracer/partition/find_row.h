@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Choices are rows in a table; this finds one by name.
 #ifndef STIPPLE_RAYTRACER_PARTITION_FIND_ROW_H
 #define STIPPLE_RAYTRACER_PARTITION_FIND_ROW_H

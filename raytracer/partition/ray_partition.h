@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which rank traces which ray. Pure functions of sizes and names: every rank computes its own
 // answer and no message is needed to agree.
 //

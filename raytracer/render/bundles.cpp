@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Bundles on demand. A node asks by sending what it found; its first, empty message asks too. The
 // host answers with the number of the next bundle, or kNoBundle when there is none left, before it
 // looks at what came in: the node should not wait for the host's bookkeeping.

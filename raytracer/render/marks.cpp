@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "raytracer/render/marks.h"
 
 #include <stipple/user.h>

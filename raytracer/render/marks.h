@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the ray tracer tells a tracing tool about itself; nothing happens when none is loaded.
 #ifndef STIPPLE_RAYTRACER_RENDER_MARKS_H
 #define STIPPLE_RAYTRACER_RENDER_MARKS_H

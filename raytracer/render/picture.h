@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // From what the rays found to pictures: the picture itself, and a map of what each pixel cost.
 #ifndef STIPPLE_RAYTRACER_RENDER_PICTURE_H
 #define STIPPLE_RAYTRACER_RENDER_PICTURE_H

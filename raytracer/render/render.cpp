@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "raytracer/render/render.h"
 
 #include "raytracer/partition/find_row.h"

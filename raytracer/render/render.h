@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Rendering over all ranks: who traces what, and how the results come together.
 #ifndef STIPPLE_RAYTRACER_RENDER_RENDER_H
 #define STIPPLE_RAYTRACER_RENDER_RENDER_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "raytracer/render/sampling.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which rays make a pixel: one through each corner, or some inside.
 #ifndef STIPPLE_RAYTRACER_RENDER_SAMPLING_H
 #define STIPPLE_RAYTRACER_RENDER_SAMPLING_H

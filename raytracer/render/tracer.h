@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What one ray sees: Whitted's model as the rules of the Standard Procedural Databases say it.
 //
 // At a hit each light that the surface faces gets a shadow ray (none if the normal faces away); a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "raytracer/render/world.h"
 
 namespace stipple::raytracer {

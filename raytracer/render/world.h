@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The ranks of this run, and how they stop together.
 #ifndef STIPPLE_RAYTRACER_RENDER_WORLD_H
 #define STIPPLE_RAYTRACER_RENDER_WORLD_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // SPD's sphereflake: a ball carries nine balls of a third of its size, each of which carries nine,
 // and so on.
 #include <array>

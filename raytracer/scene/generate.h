@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The four scenes of Eric Haines' Standard Procedural Databases that the exemplar uses, at any
 // size: the same objects in the same order as SPD's own generators write them.
 #ifndef STIPPLE_RAYTRACER_SCENE_GENERATE_H

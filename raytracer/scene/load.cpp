@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "raytracer/scene/load.h"
 
 #include <fmt/format.h>

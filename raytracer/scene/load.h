@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // From names and sizes to a scene.
 #ifndef STIPPLE_RAYTRACER_SCENE_LOAD_H
 #define STIPPLE_RAYTRACER_SCENE_LOAD_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Rotations and scalings of the generated scenes.
 #ifndef STIPPLE_RAYTRACER_SCENE_MATRIX_H
 #define STIPPLE_RAYTRACER_SCENE_MATRIX_H

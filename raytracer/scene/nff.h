@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The Neutral File Format (Eric Haines, 1987): the whole of it, read by tokens, so that line breaks
 // mean nothing.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "raytracer/scene/nff_tokens.h"
 
 #include <fmt/format.h>

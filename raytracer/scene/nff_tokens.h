@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Words and numbers of an NFF text, each with the line it stands on.
 #ifndef STIPPLE_RAYTRACER_SCENE_NFF_TOKENS_H
 #define STIPPLE_RAYTRACER_SCENE_NFF_TOKENS_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // SPD's rings: a pyramid of groups of six interlocking five-sided rings before a wall.
 #include <cmath>
 #include <numbers>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A scene: what is seen, from where, in which light.
 #ifndef STIPPLE_RAYTRACER_SCENE_SCENE_H
 #define STIPPLE_RAYTRACER_SCENE_SCENE_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // SPD's teapot: M. Newell's pot of 1975, lid and bottom included, on a checkerboard. The pot is 32
 // bicubic Bezier patches, each cut into n x n cells of two triangles with normals; cells at the
 // middle of the lid and of the bottom are one triangle.

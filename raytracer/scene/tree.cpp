@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // SPD's tree, grown as M. Aono and T. Kunii describe ("Botanical Tree Image Generation", IEEE CG&A
 // 4(5), 1984): each branch is a cone with a ball at its tip and carries two shorter, thinner
 // branches.

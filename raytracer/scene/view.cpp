@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "raytracer/scene/view.h"
 
 #include <numbers>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where the eye stands, and the ray through each point of the picture.
 #ifndef STIPPLE_RAYTRACER_SCENE_VIEW_H
 #define STIPPLE_RAYTRACER_SCENE_VIEW_H

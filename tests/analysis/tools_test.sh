@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # tools_test.sh STIPPLE SOURCE_DIR: what scripts rely on: exit statuses, where output goes, JSON keys, errors that name
 # what is known.
 set -u

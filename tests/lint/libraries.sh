@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # usage: libraries.sh LIB_DIR BIN_DIR
 # What the built files may need: the core only libc, nothing in the runtime instrumented, VTK and MPI not in `stipple`.
 set -u

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Every option is a row; what the rows promise, the parser keeps.
 #include "raytracer/options.h"
 

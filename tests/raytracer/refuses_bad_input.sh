@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # Unusable input ends with exit status 2 and one message, however many ranks saw it.
 # usage: refuses_bad_input.sh RAYTRACER MPIEXEC
 set -eu

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # One picture, byte for byte, whatever the partition, bundle, selection and number of ranks; and counts that do not depend
 # on them either.
 # usage: same_picture.sh RAYTRACER MPIEXEC

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The hierarchy changes what is tested, never what is hit.
 #include "raytracer/geometry/bvh.h"
 

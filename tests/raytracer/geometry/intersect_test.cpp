@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Intersections whose answer is known in closed form.
 #include "raytracer/geometry/intersect.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The arithmetic that the ray tracer is compiled with.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "raytracer/partition/ray_partition.h"
 
 #include <gtest/gtest.h>

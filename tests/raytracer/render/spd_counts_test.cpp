@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The rays that a scene needs do not depend on the machine or the program: SPD publishes them, and
 // they are the oracle.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A scene in one number: every object, in order, to six significant digits as NFF files carry them.
 #ifndef STIPPLE_TESTS_RAYTRACER_SCENE_DIGEST_H
 #define STIPPLE_TESTS_RAYTRACER_SCENE_DIGEST_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The generated scenes are SPD's, object by object. The digests were computed from the files that
 // SPD's own generators write; ours gives the same ones.
 #include "raytracer/scene/generate.h"

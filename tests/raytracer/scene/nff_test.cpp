@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "raytracer/scene/nff.h"
 
 #include <gtest/gtest.h>
