@@ -4,7 +4,10 @@
 // An event is one asm statement: it survives every pass, may be copied, and a leaf function stays a
 // leaf. rdtsc fixes rax and rdx, the way back from the slow path fixes r11. The slow path is jumped
 // to from a subsection behind the function; since nothing is pushed, red zone and unwind tables
-// stay true. The jump and the way back satisfy indirect-branch tracking.
+// stay true. It comes back into the straight line, behind an instruction of it: to an unwinder in
+// the slow path the way back is a return address, and that has to lie where the function's unwind
+// table holds. The jump satisfies indirect-branch tracking, and the slow path comes back by a jump
+// that is not tracked.
 //
 // The plugins put a test of the token around each event where they can, for the compiler to move
 // the event out of the straight line: without a runtime an event is then a test and a branch not
@@ -70,16 +73,15 @@ constexpr std::string_view kAppend = R"(
 constexpr std::string_view kFinishEnter = R"(
 	orq	~q, %rax
 	movq	%rax, (%r11)
+	movl	~t, %eax
+.Lstipple_back~u:
+	movl	%eax, ~t
 .Lstipple_done~u:
 	.subsection	1
 .Lstipple_cold~u:
 	movl	~t, %eax
 	leaq	.Lstipple_back~u(%rip), %r11
 	notrack jmp	*stipple_dso_1+16(%rip)
-.Lstipple_back~u:
-	endbr64
-	movl	%eax, ~t
-	jmp	.Lstipple_done~u
 	.subsection	0
 )";
 
@@ -92,11 +94,8 @@ constexpr std::string_view kFinishLeave = R"(
 .Lstipple_cold~u:
 	movl	~t, %eax
 	orl	$0x800000, %eax
-	leaq	.Lstipple_back~u(%rip), %r11
+	leaq	.Lstipple_done~u(%rip), %r11
 	notrack jmp	*stipple_dso_1+16(%rip)
-.Lstipple_back~u:
-	endbr64
-	jmp	.Lstipple_done~u
 	.subsection	0
 )";
 

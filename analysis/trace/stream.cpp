@@ -238,6 +238,14 @@ Chunk ChunkAt(std::span<const std::byte> file, std::size_t offset, const ChunkHe
           h.raw_ns,   h.lost};
 }
 
+/// Whether a chunk of events has lost its magic and nothing else: its thread copied the window and
+/// was killed before it had cleared it. The copy counts, and the window's granules begin with
+/// events.
+bool IsBeingCleared(const ChunkHeader& h) {
+  return h.magic == 0 && h.kind == ChunkKind::kEvents && h.bytes != 0 &&
+         h.bytes % kGranuleBytes == 0;
+}
+
 /// Walks the granules. One that is no chunk's begin is skipped; a whole one of zeros was never
 /// used.
 FoundChunks FindChunks(Stream& stream) {
@@ -250,7 +258,7 @@ FoundChunks FindChunks(Stream& stream) {
                        (h.kind == ChunkKind::kEvents || h.kind == ChunkKind::kDefinitions);
     if (!valid) {
       if (h.magic != 0) stream.health.Add(Defect::kBadChunk, stream.file_name);
-      offset += kGranuleBytes;
+      offset += IsBeingCleared(h) ? SoundBytes(file, offset, h.bytes) : kGranuleBytes;
       continue;
     }
     if (const std::uint32_t bytes = SoundBytes(file, offset, h.bytes); bytes != h.bytes) {
@@ -273,12 +281,19 @@ FoundChunks FindChunks(Stream& stream) {
   return found;
 }
 
-/// Sequence numbers are 0, 1, ...: what is not there was lost, what is there twice is damage.
+/// Sequence numbers are 0, 1, ...: what is not there was lost. Of what is there twice the first
+/// counts: the second is the copy of a window whose process was killed before it lost its magic.
+/// Two different chunks of one number are damage.
 void OrderChunks(std::vector<Chunk>& chunks, Stream& stream) {
   std::ranges::stable_sort(chunks, {}, &Chunk::sequence);
-  const auto twice = std::ranges::unique(chunks, {}, &Chunk::sequence);
-  stream.health.Add(Defect::kBadChunk, stream.file_name, twice.size());
-  chunks.erase(twice.begin(), twice.end());
+  std::vector<Chunk> once;
+  for (const Chunk& c : chunks) {
+    if (once.empty() || once.back().sequence != c.sequence)
+      once.push_back(c);
+    else if (once.back().ticks != c.ticks || once.back().raw_ns != c.raw_ns)
+      stream.health.Add(Defect::kBadChunk, stream.file_name);
+  }
+  chunks = std::move(once);
   std::uint64_t expected = 0;
   for (const Chunk& c : chunks) {
     const std::uint64_t missing = c.sequence - expected;

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
+
 #include "analysis/stats/health_check.h"
 #include "analysis/trace/demangle.h"
 #include "analysis/trace/input_error.h"
@@ -73,6 +75,71 @@ TEST(Trace, TimesGoOnOverChunksAndOverTheEndOf40Bits) {
   s.Leave(1, 6 * kWrap + 30);
   s.End(6 * kWrap + 40);
   EXPECT_EQ(TimesOf(s), (std::vector<std::int64_t>{0, 57, kWrap + 60, kWrap + 80}));
+}
+
+TEST(Trace, SilentThreadsTimeStampBringsTheTimeBack) {
+  constexpr std::uint64_t kWrap = std::uint64_t{1} << 40;
+  StreamWriter s = Program();
+  s.header.start_ticks = s.header.start_raw_ns = 100;
+  s.NewChunk(100);
+  s.Enter(1, 200);
+  s.Append(TimeStamp{0, 3 * kWrap + 150, 3 * kWrap + 150});
+  s.Leave(1, 3 * kWrap + 200);
+  s.End(3 * kWrap + 300);
+  const std::vector<std::int64_t> times = TimesOf(s);
+  ASSERT_GE(times.size(), 2U);
+  EXPECT_EQ(times.back() - times.front(), 3 * kWrap);
+}
+
+constexpr std::uint64_t kEventsOfGranule = (kGranuleBytes - sizeof(ChunkHeader)) / 8;
+
+/// A window of two granules as a kill can leave it: its last events stand first in the file, an
+/// earlier chunk and the copy of the window behind.
+std::string BytesOfReusedWindow(bool magic, bool first_words) {
+  StreamWriter s = Program();
+  s.NewChunk(1000);
+  s.Enter(1, 2000);
+  s.NewChunk(3000);
+  for (std::uint64_t i = 0; i < kEventsOfGranule; ++i)
+    i % 2 == 0 ? s.Enter(2, 4000 + i) : s.Leave(2, 4000 + i);
+  s.End(9000);
+  std::string bytes = s.Bytes();
+  const std::string full = bytes.substr(bytes.size() - kGranuleBytes);
+  std::string window = full + std::string(kGranuleBytes, '\0');
+  const std::uint32_t window_bytes = 2 * kGranuleBytes;
+  std::memcpy(window.data() + offsetof(ChunkHeader, bytes), &window_bytes, sizeof(window_bytes));
+  const EventWord enter = MakeEvent(8000, false, RegionId{2});
+  const EventWord leave = MakeEvent(8001, true, RegionId{2});
+  std::memcpy(window.data() + kGranuleBytes, &enter, 8);
+  std::memcpy(window.data() + kGranuleBytes + 8, &leave, 8);
+  std::string cleared = window;
+  if (!magic) std::memset(cleared.data(), 0, 8);
+  if (!first_words) std::memset(cleared.data() + kGranuleBytes, 0, 8);
+  const std::size_t before = bytes.size() - 2 * kGranuleBytes;
+  return bytes.substr(0, before) + cleared + bytes.substr(before, kGranuleBytes) + window;
+}
+
+TEST(Trace, WindowLeftBetweenCopyAndClearingCountsOnce) {
+  struct State {
+    bool magic;
+    bool first_words;
+  };
+  for (const State state : {State{true, true}, State{false, true}, State{false, false}}) {
+    TemporaryArchive archive;
+    archive.AddBytes("1", BytesOfReusedWindow(state.magic, state.first_words));
+    const Trace trace = Trace::Open(archive.path());
+    EXPECT_EQ(trace.EventCount(), 1 + kEventsOfGranule + 2);
+    EXPECT_EQ(trace.Health().CountOf(Defect::kBadChunk), 0U) << state.magic << state.first_words;
+    EXPECT_EQ(trace.Health().CountOf(Defect::kMissingChunk), 0U);
+  }
+}
+
+TEST(Trace, TwoDifferentChunksOfOneNumberAreDamage) {
+  std::string bytes = BytesOfReusedWindow(true, true);
+  bytes[bytes.size() - 2 * kGranuleBytes + offsetof(ChunkHeader, ticks)] ^= 1;
+  TemporaryArchive archive;
+  archive.AddBytes("1", bytes);
+  EXPECT_EQ(Trace::Open(archive.path()).Health().CountOf(Defect::kBadChunk), 1U);
 }
 
 TEST(Trace, StepBackTakesThePredecessorsTime) {

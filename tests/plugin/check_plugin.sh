@@ -68,6 +68,13 @@ case $check in
     grep -qE '\bcall' leaf && fail "Sink calls"
     grep -qE '\bpush|%rsp' leaf && fail "Sink uses the stack"
     ;;
+  unwind) # from within the slow path the stack is that of the open visits, with and without frame pointers
+    for option in -fomit-frame-pointer -fno-omit-frame-pointer; do
+      more="-rdynamic $option" compile "$apps/recursion.c" app instruction-threshold=1
+      LD_PRELOAD=${recorder%/*}/libstipple_unwinder.so ./app 10 >output || fail "does not run"
+      grep -qE '^chains [1-9][0-9]+ wrong 0$' output || { cat output >&2; fail "wrong stacks"; }
+    done
+    ;;
   defaults) # short functions without loop and call are left out, listed ones come in or go
     compile "$apps/recursion.c" app
     record "" ./app 20

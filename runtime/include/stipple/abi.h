@@ -22,9 +22,9 @@
  *     *slot = time | token                     not zero: this is the commit
  *
  * `slow` is a jump, not a call, so that neither red zone nor unwind tables of the function need to
- * know of it: eax = token (leave: token | STIPPLE_LEAVE), r11 = address to come back to; it comes
- * back with eax = the token for the exits (enter) and every other register as it was, but for rdx,
- * r11 and the flags. */
+ * know of it: eax = token (leave: token | STIPPLE_LEAVE), r11 = address to come back to, inside the
+ * function and its unwind table; it comes back by `notrack jmp` with eax = the token for the exits
+ * (enter) and every other register as it was, but for rdx, r11 and the flags. */
 /* clang-format on */
 #ifndef STIPPLE_ABI_H
 #define STIPPLE_ABI_H

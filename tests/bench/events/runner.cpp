@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
 // What an event costs. Each kernel is here as shared objects of several variants (kernel.h), loaded
 // side by side; the runner lets them take turns every half millisecond, so that whatever else the
-// machine does hits all alike, and compares
-// round by round. The recorder is a ring of 64 KB: this measures
-// the code in the program, not the writing of archives.
+// machine does hits all alike, and compares round by round. The recorder is a ring of 64 KB: this
+// measures the code in the program, not the writing of archives (recording.cpp does).
 //
 //   bench_events [ROUNDS] [KERNEL...]
-#include <dlfcn.h>
 #include <x86intrin.h>
 
 #include <algorithm>
@@ -17,6 +15,7 @@
 #include <vector>
 
 #include "stipple/abi.h"
+#include "tests/bench/events/variant.h"
 
 namespace {
 
@@ -30,7 +29,8 @@ std::uint64_t clock_mask = 0;
 stipple_control ring_control{};
 __thread stipple_control* control __attribute__((tls_model("initial-exec"))) = &ring_control;
 
-using Kernel = std::uint64_t (*)(std::uint64_t);
+using stipple_bench::Kernel;
+using stipple_bench::Quantile;
 
 struct Variant {
   std::string name;
@@ -99,13 +99,7 @@ namespace {
 Kernel Load(const std::string& file, bool record, std::uint64_t mask) {
   recording = record;
   clock_mask = mask;
-  void* object = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-  void* kernel = object == nullptr ? nullptr : dlsym(object, "kernel_run");
-  if (kernel == nullptr) {
-    std::fprintf(stderr, "bench_events: %s\n", dlerror());
-    std::exit(2);
-  }
-  return reinterpret_cast<Kernel>(kernel);
+  return stipple_bench::LoadKernel(file);
 }
 
 double NsPerCall(Kernel kernel) {
@@ -126,12 +120,6 @@ double EventsPerCall(Kernel recorded) {
   const std::uint64_t before = EventsSoFar();
   recorded(kCalls);
   return double(EventsSoFar() - before) / double(kCalls);
-}
-
-double Quantile(std::vector<double> values, double share) {
-  const auto at = values.begin() + std::ptrdiff_t(share * double(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
 }
 
 void Measure(const std::string& kernel, const std::string& compiler, int rounds) {
