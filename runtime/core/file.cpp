@@ -20,8 +20,8 @@ constexpr std::uint64_t kFirstExtentBytes = 256 * 1024;
 constexpr std::uint64_t kLargestExtentBytes = 16 * 1024 * 1024;
 // A long stream must not push the program's own files out of memory, and pages that are used again
 // cost a tenth of fresh ones in a virtual machine: what is older than this is written out and
-// dropped from the page cache, batch by batch. That costs 1.3 ns per event, so a stream that stays
-// below it is left to the kernel.
+// dropped from the page cache, batch by batch. That costs 1.3 ns per event, so a short stream is
+// left to the kernel.
 constexpr std::uint64_t kBatchBytes = 8 * 1024 * 1024;
 constexpr std::uint64_t kDirtyBatches = 16;
 constexpr std::uint64_t kCachedBatches = 32;
