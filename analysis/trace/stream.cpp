@@ -276,9 +276,12 @@ FoundChunks FindChunks(Stream& stream) {
 /// Sequence numbers are 0, 1, ...: what is not there was lost, what is there twice is damage.
 void OrderChunks(std::vector<Chunk>& chunks, Stream& stream) {
   std::ranges::stable_sort(chunks, {}, &Chunk::sequence);
-  const auto twice = std::ranges::unique(chunks, {}, &Chunk::sequence);
-  stream.health.Add(Defect::kBadChunk, stream.file_name, twice.size());
-  chunks.erase(twice.begin(), twice.end());
+  const auto twice = std::unique(chunks.begin(), chunks.end(), [](const Chunk& a, const Chunk& b) {
+    return a.sequence == b.sequence;
+  });
+  stream.health.Add(Defect::kBadChunk, stream.file_name,
+                    static_cast<std::uint64_t>(chunks.end() - twice));
+  chunks.erase(twice, chunks.end());
   std::uint64_t expected = 0;
   for (const Chunk& c : chunks) {
     const std::uint64_t missing = c.sequence - expected;
