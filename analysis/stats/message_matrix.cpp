@@ -13,7 +13,8 @@ std::vector<int> RanksOf(const Trace& trace, const Selection& selection) {
   std::vector<int> ranks;
   for (int rank = 0; rank < trace.RankCount(); ++rank)
     if (selection.HasRank(rank)) ranks.push_back(rank);
-  std::ranges::stable_partition(ranks, [&trace](int rank) { return !trace.IsHost(rank); });
+  std::stable_partition(ranks.begin(), ranks.end(),
+                        [&trace](int rank) { return !trace.IsHost(rank); });
   return ranks;
 }
 

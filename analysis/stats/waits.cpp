@@ -80,10 +80,12 @@ class WaitFinder {
   /// A probe found the first message of its channel whose receive was posted after it.
   void Probes() {
     for (const ProbeEvent& p : mpi_.probes) {
-      const auto channel =
-          std::ranges::equal_range(mpi_.receives, p.channel, {}, &ReceiveEvent::channel);
-      const auto next = std::ranges::lower_bound(channel, p.time_ns, {}, &ReceiveEvent::post_ns);
-      if (next == channel.end() || next->send == kNoIndex) continue;
+      const auto begin =
+          std::ranges::lower_bound(mpi_.receives, p.channel, {}, &ReceiveEvent::channel);
+      const auto end = std::ranges::upper_bound(begin, mpi_.receives.end(), p.channel, {},
+                                                &ReceiveEvent::channel);
+      const auto next = std::ranges::lower_bound(begin, end, p.time_ns, {}, &ReceiveEvent::post_ns);
+      if (next == end || next->send == kNoIndex) continue;
       Wait(p.call, p.channel.sender, mpi_.sends[next->send].enter_ns, WaitKind::kLateSender);
     }
   }

@@ -214,7 +214,7 @@ std::vector<int> Trace::RanksInOrder() const {
   std::vector<int> ranks;
   for (const Location& l : locations_)
     if (l.IsMain()) ranks.push_back(l.rank);
-  std::ranges::stable_partition(ranks, [this](int rank) { return !IsHost(rank); });
+  std::stable_partition(ranks.begin(), ranks.end(), [this](int rank) { return !IsHost(rank); });
   return ranks;
 }
 
