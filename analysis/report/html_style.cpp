@@ -77,7 +77,7 @@ details .scroll{overflow-x:auto}
 #tip b{display:block}
 .cursor{stroke:var(--ink);stroke-width:1;opacity:.55;pointer-events:none}
 @media screen and (max-width:1300px){body{padding:24px}}
-@media screen and (max-width:1000px){body{padding:20px 16px}.line{display:block}.line>section,.line>div{margin-bottom:22px}.line.rows{display:flex;overflow-x:auto;gap:0 40px}.line.rows .main{flex-basis:920px}.line.rows .side{flex-basis:301px}.line.rows figure{overflow:visible}.line.rows header.panel{position:sticky;left:0;max-width:calc(100vw - 32px)}figure{overflow-x:auto}.main svg{min-width:920px}.detail svg{min-width:680px}.side svg{max-width:420px}.line.lower{display:flex;flex-wrap:wrap;gap:0 4%}.detail{flex-basis:100%}.matrix{flex:1 1 300px;max-width:420px}}
+@media screen and (max-width:1000px){body{padding:20px 16px}.line{display:block}.line>section,.line>div{margin-bottom:22px}.line.rows{display:flex;overflow-x:auto;gap:0 40px}.line.rows .main{flex-basis:920px}.line.rows .side{flex-basis:301px}.line.rows figure{overflow:visible}.line.rows header.panel{position:sticky;left:0;max-width:calc(100vw - 32px)}figure{overflow-x:auto}.main svg{min-width:920px}.detail svg{min-width:680px}.side svg{max-width:420px}.line.lower{display:flex;flex-wrap:wrap;gap:0 4%}.detail{flex-basis:100%}.matrix{flex:1 1 300px;max-width:420px}td.share{width:15%}}
 @media screen and (max-width:600px){h1{font-size:22px}.profile tr>:nth-child(2){display:none}td.share{width:auto}td.share i{display:none}td,tbody th,th{padding-right:8px}main>section{overflow-x:auto}table.sortable{min-width:640px}}
 )css";
 
