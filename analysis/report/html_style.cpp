@@ -82,7 +82,7 @@ details .scroll{overflow-x:auto}
 )css";
 
 constexpr std::string_view kPrint = R"css(
-@media print{@page{size:A3 landscape;margin:10mm}:root{color-scheme:light}body{padding:0;max-width:none}*{print-color-adjust:exact;-webkit-print-color-adjust:exact}section,tr,figure{break-inside:avoid}.profile{break-inside:auto}thead{display:table-header-group}details:not([open]),#tip{display:none}h2{break-after:avoid}}
+@media print{@page{size:A3 landscape;margin:10mm}:root{color-scheme:light}body{padding:0;max-width:none}main{margin-top:8px}.line{margin-bottom:10px}section+section{margin-top:8px}*{print-color-adjust:exact;-webkit-print-color-adjust:exact}section,tr,figure{break-inside:avoid}.profile{break-inside:auto}thead{display:table-header-group}details:not([open]),#tip{display:none}h2{break-after:avoid}}
 )css";
 
 constexpr std::string_view kDarkVariables =
