@@ -44,10 +44,15 @@ std::string PanelText(const Panel& panel, const Scene& scene) {
   return text + "</header>\n<figure>" + DrawSvg(scene) + "</figure>" + panel.below + "</section>\n";
 }
 
-std::string Legend() {
+/// What the words leave open: calls into MPI count as messages unless a partner is waited for.
+constexpr std::string_view kStateHints[kStateCount] = {"", "", " (in MPI, not waiting)",
+                                                       " (waiting)"};
+
+std::string Legend(bool hints) {
   std::string text = "<ul class=\"legend\">";
   for (std::size_t s = 0; s < kStateCount; ++s)
-    text += fmt::format("<li><i class=\"s{}\"></i>{}</li>", s, kStateNames[s]);
+    text += fmt::format("<li><i class=\"s{}\"></i>{}{}</li>", s, kStateNames[s],
+                        hints ? kStateHints[s] : "");
   return text + "</ul>";
 }
 
@@ -88,8 +93,9 @@ std::string Overview(const ReportInput& input, const ViewInput& views) {
   const std::string noun(NounFor(input.timeline));
   std::string text = "<div class=\"line rows\">";
   const bool one = input.timeline.rows.size() == 1;
-  text += PanelText({one ? "State over time" : "State of each " + noun, "main", true, Legend(), {}},
-                    TimelineView(views));
+  text +=
+      PanelText({one ? "State over time" : "State of each " + noun, "main", true, Legend(!one), {}},
+                TimelineView(views));
   text += PanelText({one ? "Whole run" : "Whole run, by " + noun, "side", true, {}, {}},
                     StateBarsView(views));
   text += "</div>\n";

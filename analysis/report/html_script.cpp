@@ -23,9 +23,11 @@ constexpr std::string_view kScript = R"js(
         table.querySelectorAll("th[aria-sort]").forEach(function (other) { other.removeAttribute("aria-sort"); });
         head.setAttribute("aria-sort", down ? "descending" : "ascending");
         var body = table.tBodies[0], rows = Array.from(body.rows);
-        var value = function (row) { return row.cells[column].dataset.v; };
+        var value = function (row) { var cell = row.cells[column]; return "v" in cell.dataset ? cell.dataset.v : cell.textContent; };
         rows.sort(function (a, b) {
-          var order = head.dataset.sort === "text" ? value(a).localeCompare(value(b)) : value(a) - value(b);
+          var one = value(a), other = value(b);
+          if (one === "" || other === "") return (one === "") - (other === "");  // unknown comes last
+          var order = head.dataset.sort === "text" ? one.localeCompare(other, "en", {numeric: true}) : one - other;
           return down ? -order : order;
         });
         rows.forEach(function (row) { body.appendChild(row); });
@@ -68,7 +70,7 @@ constexpr std::string_view kScript = R"js(
     if (left + tip.offsetWidth > figure.clientWidth) left = x * scale - tip.offsetWidth - 14;
     tip.style.left = left + "px";
     tip.style.top = y * scale + 6 + "px";
-    lines.forEach(function (pair) { pair[1].setAttribute("d", "M" + x + " 0V" + (pair[0].viewBox.baseVal.height - 20)); });
+    lines.forEach(function (pair) { pair[1].setAttribute("d", "M" + x + " 0V" + (pair[0].viewBox.baseVal.height - (pair[0].querySelector(".axis") ? 26 : 8))); });
   }
   function hide() {
     tip.hidden = true;
@@ -84,10 +86,11 @@ constexpr std::string_view kScript = R"js(
   });
   svg.addEventListener("pointerleave", hide);
   figure.tabIndex = 0;
-  figure.setAttribute("aria-label", "Timeline: arrow keys read the shares of each column");
+  figure.setAttribute("aria-label", "Timeline: arrow keys, Home and End read the shares of each column");
+  figure.addEventListener("focus", function () { if (figure.matches(":focus-visible")) show(at.row, at.column); });
   figure.addEventListener("blur", hide);
   figure.addEventListener("keydown", function (event) {
-    var move = {ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [-1, 0], ArrowDown: [1, 0]}[event.key];
+    var move = {ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [-1, 0], ArrowDown: [1, 0], Home: [0, -columns], End: [0, columns]}[event.key];
     if (event.key === "Escape") hide();
     if (!move) return;
     event.preventDefault();

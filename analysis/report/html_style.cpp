@@ -11,7 +11,7 @@
 #include "analysis/views/layout.h"
 #include "analysis/views/palette.h"
 #include "analysis/views/state_runs.h"
-#include "analysis/views/svg_write.h"
+#include "analysis/views/text.h"
 
 namespace stipple {
 namespace {
@@ -28,6 +28,7 @@ p{margin:0}
 .facts a{color:inherit}
 main{margin-top:22px}
 .line{display:flex;gap:0 3.947%;align-items:flex-start;margin-bottom:26px}
+.line.rows{align-items:flex-end}
 .line.lower{gap:0 3.816%;margin-top:6px}
 .main{flex:0 0 72.368%;min-width:0}
 .side{flex:0 0 23.684%;min-width:0}
@@ -35,6 +36,7 @@ main{margin-top:22px}
 .matrix{flex:0 0 21.711%;min-width:0}
 .half{flex:1 1 0;min-width:0}
 section+section{margin-top:16px}
+main>section+section{margin-top:30px}
 .line>section+section{margin-top:0}
 header.panel{display:flex;align-items:baseline;gap:4px 16px;flex-wrap:wrap;min-height:24px;margin-bottom:4px}
 h2{font-size:15px;line-height:1.4;font-weight:650;margin:0}
@@ -43,7 +45,7 @@ h2{font-size:15px;line-height:1.4;font-weight:650;margin:0}
 .legend{display:flex;gap:4px 18px;flex-wrap:wrap;list-style:none;margin:0;padding:0;font-size:12.5px}
 .legend i{display:inline-block;width:12px;height:12px;margin-right:7px;border-radius:1.5px;vertical-align:-1px}
 figure{margin:0;position:relative}
-figure:focus-visible{outline:2px solid var(--bar);outline-offset:4px}
+figure:focus-visible,summary:focus-visible,a:focus-visible{outline:2px solid var(--bar);outline-offset:4px}
 svg{display:block;width:100%;height:auto;overflow:visible}
 table{border-collapse:collapse;width:100%;font-size:13px}
 th{font-weight:600;font-size:12px;color:var(--secondary);text-align:left;vertical-align:bottom;padding:4px 12px 6px 0;border-bottom:1px solid var(--hair)}
@@ -74,11 +76,13 @@ details .scroll{overflow-x:auto}
 #tip{position:absolute;z-index:2;pointer-events:none;background:var(--ground);color:var(--ink);border:1px solid var(--hair);border-radius:4px;padding:6px 9px;font-size:12px;line-height:1.5;box-shadow:0 2px 8px #0002;white-space:nowrap}
 #tip b{display:block}
 .cursor{stroke:var(--ink);stroke-width:1;opacity:.55;pointer-events:none}
-@media screen and (max-width:1000px){body{padding:20px 16px}.line,.line.lower{display:block}.line>section,.line>div{margin-bottom:22px}.line.rows{display:flex;overflow-x:auto;gap:0 40px}.line.rows .main{flex-basis:680px}.line.rows .side{flex-basis:223px}.line.rows figure{overflow:visible}figure{overflow-x:auto}.main svg,.detail svg{min-width:680px}.matrix svg,.side svg{max-width:420px}}
+@media screen and (max-width:1300px){body{padding:24px}}
+@media screen and (max-width:1000px){body{padding:20px 16px}.line{display:block}.line>section,.line>div{margin-bottom:22px}.line.rows{display:flex;overflow-x:auto;gap:0 40px}.line.rows .main{flex-basis:920px}.line.rows .side{flex-basis:301px}.line.rows figure{overflow:visible}.line.rows header.panel{position:sticky;left:0;max-width:calc(100vw - 32px)}figure{overflow-x:auto}.main svg{min-width:920px}.detail svg{min-width:680px}.side svg{max-width:420px}.line.lower{display:flex;flex-wrap:wrap;gap:0 4%}.detail{flex-basis:100%}.matrix{flex:1 1 300px;max-width:420px}td.share{width:15%}}
+@media screen and (max-width:600px){h1{font-size:22px}.profile tr>:nth-child(2){display:none}td.share{width:auto}td.share i{display:none}td,tbody th,th{padding-right:8px}main>section{overflow-x:auto}table.sortable{min-width:640px}}
 )css";
 
 constexpr std::string_view kPrint = R"css(
-@media print{@page{size:A3 landscape;margin:10mm}:root{color-scheme:light}body{padding:0;max-width:none}*{print-color-adjust:exact;-webkit-print-color-adjust:exact}section,tr,figure{break-inside:avoid}.profile{break-inside:auto}thead{display:table-header-group}details:not([open]),#tip{display:none}h2{break-after:avoid}}
+@media print{@page{size:A3 landscape;margin:10mm}:root{color-scheme:light}body{padding:0;max-width:none}main{margin-top:8px}.line{margin-bottom:10px}section+section{margin-top:8px}*{print-color-adjust:exact;-webkit-print-color-adjust:exact}section,tr,figure{break-inside:avoid}.profile{break-inside:auto}thead{display:table-header-group}details:not([open]),#tip{display:none}h2{break-after:avoid}}
 )css";
 
 constexpr std::string_view kDarkVariables =
@@ -165,6 +169,20 @@ char ShareLetter(double share) {
   return kLetters[static_cast<std::size_t>(std::clamp(std::lround(share * 63), 0L, 63L))];
 }
 
+/// A string inside JSON inside a script element; controls do not survive CleanUtf8.
+std::string JsonText(std::string_view text) {
+  std::string escaped;
+  for (const char letter : CleanUtf8(text)) {
+    if (letter == '<')
+      escaped += "\\u003c";
+    else if (letter == '"' || letter == '\\')
+      escaped.append({'\\', letter});
+    else
+      escaped += letter;
+  }
+  return escaped;
+}
+
 constexpr std::size_t kHoverLetters = 60'000;
 constexpr std::size_t kHoverColumns = 400;
 
@@ -205,7 +223,7 @@ std::string HoverData(const ViewInput& input) {
     for (const StateShares& shares : AverageColumns(rows.subspan(row.first, row.count), columns))
       for (std::size_t s = 0; s < 3; ++s) letters += ShareLetter(static_cast<double>(shares[s]));
     if (&row != &grid.rows.front()) data += ',';
-    data += fmt::format(R"(["{}",{},{},"{}"])", EscapeMarkup(name), row.y, row.height, letters);
+    data += fmt::format(R"(["{}",{},{},"{}"])", JsonText(name), row.y, row.height, letters);
   }
   return data + "]}";
 }

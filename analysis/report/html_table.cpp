@@ -136,13 +136,15 @@ std::string ProfileSection(const Table& profile) {
 std::string WaitsSection(const Table& waits, int culprit, std::string_view noun, int host) {
   if (waits.rows.empty()) return {};
   std::string text =
-      "<section aria-labelledby=\"h-waits\"><header class=\"panel\"><h2 id=\"h-waits\">Longest "
+      "<section class=\"waits\" aria-labelledby=\"h-waits\"><header class=\"panel\"><h2 "
+      "id=\"h-waits\">Longest "
       "waits</h2>"
       "<span class=\"note\">culprit: where the chain of delays began, and what it was "
       "doing</span></header>\n"
-      "<table class=\"sortable\"><thead><tr><th scope=\"col\">kind</th><th "
-      "scope=\"col\">waiter</th>"
-      "<th scope=\"col\">culprit</th><th scope=\"col\">culprit was in</th>"
+      "<table class=\"sortable\"><thead><tr><th scope=\"col\" "
+      "data-sort=\"text\">kind</th><th scope=\"col\" data-sort=\"text\">waiter</th>"
+      "<th scope=\"col\" data-sort=\"text\">culprit</th>"
+      "<th scope=\"col\" data-sort=\"text\">culprit was in</th>"
       "<th scope=\"col\" class=\"n\" data-sort=\"number\" "
       "aria-sort=\"descending\">time</th></tr></thead><tbody>\n";
   const std::vector<const Row*> rows = SortedBy(waits, "seconds");

@@ -79,7 +79,7 @@ Layer MeanLine(const ViewInput& input, const RowGrid& grid, const Spread& spread
                            ? input.finding->max_over_mean
                            : spread.most / std::max(spread.mean, 1e-9);
   const bool blame = CulpritOf(input) >= 0 && ratio >= 1.1;
-  const std::string text = fmt::format("most / mean {:.2f}", ratio);
+  const std::string text = fmt::format("busiest {:.2f} \u00d7 mean", ratio);
   const bool left = mean_x + half + 12 > kSideWidth - TextWidth(text, 12, blame);
   const TextStyle style{.size = 12,
                         .colour = blame ? kAccent : kSecondary,
@@ -89,7 +89,7 @@ Layer MeanLine(const ViewInput& input, const RowGrid& grid, const Spread& spread
   return layer;
 }
 
-constexpr double kWaitRow = 28;
+constexpr double kWaitRow = 46;
 constexpr std::size_t kMostWaits = 6;  // the last one may be "others"
 
 std::vector<WaitedFor> LargestWaits(const Finding& finding) {
@@ -112,14 +112,14 @@ std::string WaitedForLabel(const WaitedFor& wait, std::string_view noun) {
   return number ? fmt::format("{} {}", noun, wait.name) : CleanUtf8(wait.name);
 }
 
-/// One culprit: name, bar, the region it was in where there is room, and the time.
+/// One culprit: name, bar and time; below the bar the region it was in.
 struct WaitRow {
   double bar_left, scale, unit, y;
   int decimals;
   bool culprit;
 
   void Add(Layer& labels, Layer& bars, const WaitedFor& wait, const std::string& label) const {
-    const double middle = y + kWaitRow / 2, width = std::max(1.0, wait.seconds * scale);
+    const double middle = y + 12, width = std::max(1.0, wait.seconds * scale);
     labels.shapes.emplace_back(
         TextShape{bar_left - 10,
                   middle,
@@ -133,11 +133,10 @@ struct WaitRow {
                   middle,
                   value,
                   {.size = 13, .colour = kInk, .bold = true, .anchor = Anchor::kEnd}});
-    const double room = kSideWidth - TextWidth(value, 13, true) - 12 - (bar_left + width + 8);
-    const std::string region = room > 70 ? ShortenEnd(wait.region, room, 11) : std::string{};
+    const std::string region = ShortenEnd(wait.region, kSideWidth - bar_left, 11);
     if (!region.empty())
       labels.shapes.emplace_back(
-          TextShape{bar_left + width + 8, middle, region, {.size = 11, .colour = kSecondary}});
+          TextShape{bar_left, middle + 18, region, {.size = 11, .colour = kSecondary}});
   }
 };
 
@@ -152,7 +151,7 @@ Scene StateBarsView(const ViewInput& input) {
   scene.title = fmt::format("States of the whole run by {}", NounFor(*input.timeline));
   scene.description =
       "One bar per rank: shares of user computation, system, message and idle time.";
-  scene.note = "computing";
+  scene.note = "share computing";
   Layer values{"labels", {}};
   const std::vector<StateShares> of_rows = SharesOfGrid(grid, shares);
   for (std::size_t i = 0; i < grid.rows.size(); ++i) {
@@ -198,8 +197,7 @@ Scene WaitedForView(const ViewInput& input) {
   scene.description =
       fmt::format("Time that others spent waiting for each {}; most: {}, {}.", noun,
                   WaitedForLabel(waits.front(), noun), FormatSeconds(waits.front().seconds));
-  scene.note =
-      unit.size == 1 ? fmt::format("{}-seconds", noun) : fmt::format("{}-{}", noun, unit.name);
+  scene.note = fmt::format("others' waiting, {}", unit.name);
   scene.layers = {std::move(bars), std::move(labels)};
   return scene;
 }

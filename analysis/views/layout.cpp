@@ -9,6 +9,7 @@
 #include <span>
 
 #include "analysis/stats/table.h"
+#include "analysis/views/mark_names.h"
 #include "analysis/views/palette.h"
 #include "analysis/views/state_runs.h"
 #include "analysis/views/table_access.h"
@@ -18,7 +19,6 @@ namespace {
 
 constexpr double kLeastLabelRoom = 72;
 constexpr double kLabelGap = 12;
-constexpr double kMarkStrip = 20;  // above the rows, for the marks' names
 
 StateShares MeanOfColumns(const TimelineRow& row) {
   const std::vector<StateShares> one = AverageColumns(std::span(&row, 1), 1);
@@ -55,8 +55,14 @@ std::string_view NounFor(const Timeline& timeline) {
 RowGrid MainGrid(const ViewInput& input) {
   if (!HasRows(input.timeline)) return {};
   RowGridLimits limits;
-  limits.top = input.timeline->marks.empty() ? 4 : 4 + kMarkStrip;
-  return MakeRowGrid(input.timeline->rows, CulpritOf(input), limits);
+  limits.top = 4;
+  const Timeline& timeline = *input.timeline;
+  RowGrid grid = MakeRowGrid(timeline.rows, CulpritOf(input), limits);
+  if (timeline.marks.empty()) return grid;
+  // The labels' width, and so the axis, does not depend on where the rows begin.
+  const TimeAxis axis{timeline.begin_s, timeline.end_s, AxisLeft(grid), kMainWidth};
+  limits.top += MarkStrip(NameMarks(timeline, axis));
+  return MakeRowGrid(timeline.rows, CulpritOf(input), limits);
 }
 
 double AxisLeft(const RowGrid& grid) {

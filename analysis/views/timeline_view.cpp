@@ -4,39 +4,43 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <vector>
 
 #include "analysis/views/layout.h"
+#include "analysis/views/mark_names.h"
 #include "analysis/views/number.h"
 #include "analysis/views/palette.h"
 #include "analysis/views/state_runs.h"
-#include "analysis/views/text.h"
 #include "analysis/views/view_list.h"
 
 namespace stipple {
 namespace {
 
-constexpr double kMarkSize = 12;
 constexpr std::size_t kMostMarks = 60;  // lines beyond that would hide the states
 
-/// Dotted lines through all rows; names above them as long as they do not meet.
+/// Dotted lines through all rows, one per pixel; those with a name rise to it.
 Layer Marks(const Timeline& timeline, const RowGrid& grid, const TimeAxis& axis) {
   Layer layer{"marks", {}};
-  double free_from = axis.left;
-  std::size_t drawn = 0;
+  const double top = grid.rows.front().y, bottom = top + grid.height + 4;
+  const std::vector<MarkName> names = NameMarks(timeline, axis);
+  std::map<double, double> begin_by_x;
+  for (const MarkName& name : names) {
+    double& begin = begin_by_x.try_emplace(name.x, top).first->second;
+    begin = std::min(begin, MarkNameY(name, top) - 5);
+  }
   for (const TimelineMark& mark : timeline.marks) {
-    if (++drawn > kMostMarks) break;
-    const double x = std::floor(axis.XOf(mark.time_s)) + 0.5, top = grid.rows.front().y;
-    layer.shapes.emplace_back(
-        LineShape{{{x, top - 3}, {x, top + grid.height + 4}}, kInk, 1, true, 0.8});
-    const std::string label = FormatSeconds(mark.time_s) + ": " + CleanUtf8(mark.label);
-    const double width = TextWidth(label, kMarkSize);
-    const bool to_left = x + width > axis.right;
-    const double begin = to_left ? x - width : x;
-    if (begin < free_from) continue;
-    free_from = begin + width + 12;
-    const TextStyle style{
-        .size = kMarkSize, .colour = kInk, .anchor = to_left ? Anchor::kEnd : Anchor::kStart};
-    layer.shapes.emplace_back(TextShape{x, top - 12, label, style});
+    if (begin_by_x.size() >= kMostMarks) break;
+    begin_by_x.try_emplace(std::floor(axis.XOf(mark.time_s)) + 0.5, top - 3);
+  }
+  for (const auto& [x, begin] : begin_by_x)
+    layer.shapes.emplace_back(LineShape{{{x, begin}, {x, bottom}}, kInk, 1, true, 0.8});
+  for (const MarkName& name : names) {
+    const TextStyle style{.size = kMarkNameSize,
+                          .colour = kInk,
+                          .anchor = name.to_left ? Anchor::kEnd : Anchor::kStart};
+    const double aside = name.to_left ? -kMarkNameAside : kMarkNameAside;
+    layer.shapes.emplace_back(TextShape{name.x + aside, MarkNameY(name, top), name.text, style});
   }
   return layer;
 }

@@ -6,10 +6,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "analysis/views/axis.h"
+#include "analysis/views/mark_names.h"
 #include "analysis/views/number.h"
 #include "analysis/views/palette.h"
 #include "analysis/views/state_runs.h"
@@ -166,6 +168,21 @@ INSTANTIATE_TEST_SUITE_P(Samples, EverySample,
                            std::erase(name, '-');
                            return name;
                          });
+
+TEST(Marks, CoincidingOnesAreNamedOnceEachOnLevelsOfTheirOwn) {
+  Timeline timeline;
+  timeline.end_s = 10;
+  for (int rank = 0; rank < 4; ++rank)
+    for (const char* label : {"load begins", "build begins", "render begins"})
+      timeline.marks.push_back({2 + 0.001 * rank, label, rank});
+  timeline.marks.push_back({7, "load begins", 0});
+  const std::vector<MarkName> names = NameMarks(timeline, {0, 10, 72, 1100});
+  ASSERT_EQ(names.size(), 4U) << "rank 0 loads twice";
+  EXPECT_EQ(names[0].text, "7.00 s: load begins");
+  std::set<std::size_t> levels;
+  for (std::size_t i = 1; i < names.size(); ++i) levels.insert(names[i].level);
+  EXPECT_EQ(levels.size(), 3U);
+}
 
 TEST(Matrix, SmallCellsCarryNoNumbers) {
   const ReportInput report = SampleReport(64, true);

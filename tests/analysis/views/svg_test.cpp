@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <fstream>
 #include <string>
 
 #include "analysis/report/html.h"
+#include "analysis/report/html_style.h"
 #include "analysis/views/palette.h"
 #include "sample_inputs.h"
 
@@ -118,6 +120,20 @@ TEST(Report, HostileNamesCannotLeaveTheirPlace) {
   report.profile.rows[0][0] = hostile;
   report.profile.rows[0][1] = hostile;
   EXPECT_FALSE(Contains(ReportPage(report), "<script>alert"));
+}
+
+TEST(Report, RowNamesInTheHoverDataAreJson) {
+  ReportInput report = SampleReport(3, true);
+  report.timeline.rows.back().name = "a\\b\"c</script>";
+  const std::string data = HoverData(ViewsOfSample(report));
+  EXPECT_TRUE(Contains(data, R"(["a\\b\"c\u003c/script>",)")) << data.substr(0, 200);
+}
+
+TEST(Report, ScriptHasNoSyntaxError) {
+  if (std::system("node --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "needs node";
+  const std::string path = testing::TempDir() + "stipple_page_script.js";
+  std::ofstream(path) << PageScript();
+  EXPECT_EQ(std::system(("node --check '" + path + "'").c_str()), 0);
 }
 
 TEST(Report, ManyFunctionsAreCutAtThirty) {
