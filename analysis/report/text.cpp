@@ -21,6 +21,8 @@ template <class... Cases>
 struct Match : Cases... {
   using Cases::operator()...;
 };
+template <class... Cases>
+Match(Cases...) -> Match<Cases...>;  // clang 14 does not find it by itself
 
 std::string CellText(const Cell& cell) {
   return std::visit(Match{[](std::monostate) { return std::string("-"); },

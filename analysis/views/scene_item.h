@@ -18,7 +18,7 @@ class SceneItem : public vtkContextItem {
   static SceneItem* New();
 
   /// Not owned; must outlive the painting.
-  void SetScene(const stipple::Scene* scene) { scene_ = scene; }
+  void Show(const stipple::Scene* scene) { scene_ = scene; }
   bool Paint(vtkContext2D* painter) override;
   void PaintShape(vtkContext2D* painter, const Shape& shape) const;
 

@@ -89,7 +89,7 @@ std::string DrawSvg(const Scene& scene, const SvgOptions& options) {
   vtkNew<SheetViewport> viewport;
   viewport->SetSheet(sheet);
   vtkNew<SceneItem> item;
-  item->SetScene(&whole);
+  item->Show(&whole);
   vtkNew<vtkXMLDataElement> root;
   root->SetName("svg");
   for (const Layer& layer : whole.layers) DrawLayer(item, layer, viewport, root);

@@ -318,7 +318,7 @@ TEST(Finding, SerialRunIsComputation) {
 TEST(Timeline, ColumnsHoldTheStatesExactly) {
   const Written w(LateSender());
   const Analysis analysis(w.trace);
-  for (const std::size_t columns : {1, 7, 1000}) {
+  for (const std::size_t columns : {1U, 7U, 1000U}) {
     const Timeline t = TimelineOf(analysis, 0, 4000e-9, columns);
     ASSERT_EQ(t.rows.size(), 2U);
     double idle = 0;
