@@ -157,14 +157,12 @@ void BlameOne(const Trace& trace, const std::vector<RankStates>& states,
 }
 
 /// The region in which the ranks compute most, and its share of the computing time.
-std::pair<std::string, double> BusiestRegion(const Trace& trace, const Selection& selection) {
-  std::vector<double> sums(trace.regions().size());
-  for (const Location& l : trace.locations()) {
-    if (!l.IsMain() || !selection.HasRank(l.rank)) continue;
-    const std::vector<RegionTime> times = ProfileOf(trace, l, selection);
-    for (std::size_t r = 0; r < times.size(); ++r)
-      if (trace.regions()[r].kind != RegionKind::kMpi) sums[r] += times[r].exclusive_ns;
-  }
+std::pair<std::string, double> BusiestRegion(const Analysis& analysis, const Selection& selection) {
+  const Trace& trace = analysis.trace;
+  const std::vector<RegionTime> times = SumOfMains(analysis, selection);
+  std::vector<double> sums(times.size());
+  for (std::size_t r = 0; r < times.size(); ++r)
+    if (trace.regions()[r].kind != RegionKind::kMpi) sums[r] = times[r].exclusive_ns;
   if (sums.empty()) return {};
   const auto most = std::ranges::max_element(sums);
   const double sum = std::accumulate(sums.begin(), sums.end(), 0.0);
@@ -173,9 +171,10 @@ std::pair<std::string, double> BusiestRegion(const Trace& trace, const Selection
           *most / sum};
 }
 
-void BlameNobody(const Trace& trace, const Selection& selection, const Totals& totals, Finding& f) {
-  const auto [region, share] = BusiestRegion(trace, selection);
-  const Words words(trace);
+void BlameNobody(const Analysis& analysis, const Selection& selection, const Totals& totals,
+                 Finding& f) {
+  const auto [region, share] = BusiestRegion(analysis, selection);
+  const Words words(analysis.trace);
   f.sentence = "No " + words.Noun() +
                " waits for another: " + PercentText(totals.user, totals.span) +
                " of the time is computation";
@@ -220,7 +219,7 @@ Finding FindingOf(const Analysis& analysis, const Selection& selection,
   if (totals.span <= 0) {
     f.sentence = "The archive holds no events";
   } else if (f.waited_for.empty() || totals.idle < kNotableShare * totals.span) {
-    BlameNobody(trace, selection, totals, f);
+    BlameNobody(analysis, selection, totals, f);
   } else if (f.waited_for.front().seconds >= kBlameShare * blamed) {
     BlameOne(trace, states, blames, f);
   } else {

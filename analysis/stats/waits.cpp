@@ -348,15 +348,16 @@ std::vector<Blame> BlameOf(const Trace& trace, const MpiActivity& mpi,
     const auto& [waiter, culprit, kind] = key;
     blames.push_back({waiter, culprit, kind, static_cast<double>(ns) * 1e-9, 0});
   }
-  for (const auto& [culprit, pieces] : charger.pieces) {
-    const Location* l = trace.MainOf(culprit);
-    if (l == nullptr) continue;
-    CulpritVisitor visitor(trace, *l, pieces);
-    trace.Scan(*l, visitor);
+  std::vector<const Location*> culprits;
+  for (const auto& [culprit, pieces] : charger.pieces)
+    if (const Location* l = trace.MainOf(culprit)) culprits.push_back(l);
+  trace.ForEachOf(culprits, "finding who was late", [&](const Location& l) {
+    CulpritVisitor visitor(trace, l, charger.pieces.at(l.rank));
+    trace.Scan(l, visitor);
     visitor.Finish();
     for (Blame& b : blames)
-      if (b.culprit == culprit) b.region = trace.ProcessOf(*l).regions[visitor.MostOf(b.kind)];
-  }
+      if (b.culprit == l.rank) b.region = trace.ProcessOf(l).regions[visitor.MostOf(b.kind)];
+  });
   std::ranges::stable_sort(blames, std::greater<>(), &Blame::seconds);
   return blames;
 }

@@ -5,23 +5,18 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/report/text.h"
+#include "analysis/stats/analysis.h"
 #include "analysis/tools/command.h"
-#include "analysis/trace/mpi_activity.h"
+#include "analysis/tools/progress.h"
 
 namespace stipple {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Info {
-  const Trace& trace;
-  const MpiActivity& mpi;
-  const TraceHealth& health;
-};
-
 double Seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
-Json ClockJson(const Info& info) {
+Json ClockJson(const Analysis& info) {
   const ClockReport& clock = info.trace.clock();
   const auto& processes = info.trace.processes();
   return {{"kind", clock.kind == ClockKind::kVirtual ? "virtual" : "tsc"},
@@ -45,7 +40,7 @@ Json RecordedJson(const Trace& trace) {
   return recorded;
 }
 
-std::string InfoJson(const Info& info) {
+std::string InfoJson(const Analysis& info) {
   const Trace& trace = info.trace;
   Json locations = Json::array();
   for (const Location& l : trace.locations())
@@ -67,7 +62,7 @@ std::string InfoJson(const Info& info) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::string ClockText(const Info& info) {
+std::string ClockText(const Analysis& info) {
   const ClockReport& clock = info.trace.clock();
   if (clock.kind == ClockKind::kVirtual) return "virtual time";
   if (clock.computers <= 1)
@@ -79,7 +74,7 @@ std::string ClockText(const Info& info) {
                      CountText(info.mpi.reversed, "message"));
 }
 
-std::string InfoText(const Info& info) {
+std::string InfoText(const Analysis& info) {
   const Trace& trace = info.trace;
   const auto rank_count = static_cast<std::uint64_t>(trace.RankCount());
   std::string text = fmt::format(
@@ -113,13 +108,12 @@ int RunInfo(const Arguments& arguments) {
   app.add_option("A", archive, "the archive")->required();
   app.add_flag("--json", json, "as one JSON object");
   if (!Parse(app, arguments)) return 0;
-  const Trace trace = Trace::Open(archive);
-  const MpiActivity mpi = ReadMpiActivity(trace);
-  TraceHealth health = trace.Health();
-  health.Add(mpi.health);
-  const Info info{trace, mpi, health};
-  WriteOut(json ? InfoJson(info) : InfoText(info));
-  if (!json) WarnOfProblems(trace, health);
+  ProgressLine progress;
+  const Trace trace = Trace::Open(archive, progress.meter());
+  const Analysis analysis(trace);
+  progress.Stop();
+  WriteOut(json ? InfoJson(analysis) : InfoText(analysis));
+  if (!json) WarnOfProblems(trace, analysis.health);
   return 0;
 }
 

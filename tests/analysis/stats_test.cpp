@@ -79,6 +79,13 @@ struct Written {
   Trace trace;
 };
 
+/// Of the first location, by region.
+std::vector<RegionTime> Profile(const Trace& trace, const Selection& selection) {
+  std::vector<RegionTime> times(trace.regions().size());
+  for (const RegionTime& t : ProfileOf(trace, trace.locations()[0], selection)) times[t.region] = t;
+  return times;
+}
+
 double Number(const Cell& cell) {
   return std::holds_alternative<double>(cell) ? std::get<double>(cell)
                                               : static_cast<double>(std::get<std::int64_t>(cell));
@@ -102,7 +109,7 @@ TEST(Profile, ExclusiveTimesSumToTheSpanAndRecursionCountsOnce) {
   TemporaryArchive archive;
   archive.Add(s);
   const Trace trace = Trace::Open(archive.path());
-  const std::vector<RegionTime> times = ProfileOf(trace, trace.locations()[0], {});
+  const std::vector<RegionTime> times = Profile(trace, {});
   double exclusive = 0;
   for (const RegionTime& t : times) exclusive += t.exclusive_ns;
   EXPECT_DOUBLE_EQ(exclusive, 1000);
@@ -131,13 +138,12 @@ TEST(Profile, PartsOfTheTimeSumToTheWhole) {
   double parts = 0;
   std::uint64_t calls = 0;
   for (std::int64_t begin = 0; begin < 8000; begin += 1000) {
-    const auto times =
-        ProfileOf(trace, trace.locations()[0], {begin, begin + 1000 - 1, std::nullopt});
+    const auto times = Profile(trace, {begin, begin + 1000 - 1, std::nullopt});
     calls += times[2].calls;
-    const auto exact = ProfileOf(trace, trace.locations()[0], {begin, begin + 1000, std::nullopt});
+    const auto exact = Profile(trace, {begin, begin + 1000, std::nullopt});
     parts += exact[2].exclusive_ns;
   }
-  const auto whole = ProfileOf(trace, trace.locations()[0], {});
+  const auto whole = Profile(trace, {});
   EXPECT_NEAR(parts, whole[2].exclusive_ns, 1e-6);
   EXPECT_EQ(calls, whole[2].calls);
 }
@@ -159,7 +165,7 @@ TEST(Messages, MatchInTheOrderOfPostsNotOfCompletions) {
   });
   receiver.End(5000);
   const Written w({sender, receiver});
-  const MpiActivity mpi = ReadMpiActivity(w.trace);
+  const MpiActivity mpi = Analysis(w.trace).mpi;
   EXPECT_EQ(mpi.matched, 3U);
   EXPECT_EQ(mpi.Unmatched(), 0U);
   for (const ReceiveEvent& r : mpi.receives) EXPECT_EQ(mpi.sends[r.send].bytes, r.bytes);
@@ -176,7 +182,7 @@ TEST(Messages, CancelledSendsAreGoneAndLostReceivesAreCounted) {
   receiver.Receive(0, 5, 1300, 1400);
   receiver.End(5000);
   const Written w({sender, receiver});
-  const MpiActivity mpi = ReadMpiActivity(w.trace);
+  const MpiActivity mpi = Analysis(w.trace).mpi;
   EXPECT_EQ(mpi.matched, 1U);
   EXPECT_EQ(mpi.sends.size(), 2U);
   EXPECT_EQ(mpi.health.CountOf(Defect::kUnmatchedSend), 1U);
@@ -217,7 +223,7 @@ TEST(States, SumToTheSpanAndIdleEndsWhenThePartnerArrives) {
 
 TEST(Waits, NameTheCulpritAndWhereItWas) {
   const Written w(LateSender());
-  const Table table = TableEntries()[4].make(w.trace, {}, false).table;
+  const Table table = TableEntries()[4].make(Analysis(w.trace), {}, false).table;
   ASSERT_EQ(table.rows.size(), 2U);
   EXPECT_EQ(std::get<std::string>(table.rows[0][0]), "late-sender");
   EXPECT_EQ(Number(table.rows[0][1]), 1);
@@ -339,7 +345,7 @@ TEST(Tables, EachNameOccursOnceAndWorksOnAnEmptyArchive) {
   std::map<std::string_view, int> names;
   for (const TableEntry& entry : TableEntries()) {
     EXPECT_EQ(++names[entry.name], 1);
-    const Table table = entry.make(trace, {}, false).table;
+    const Table table = entry.make(Analysis(trace), {}, false).table;
     EXPECT_EQ(table.name, entry.name);
     EXPECT_TRUE(table.rows.empty()) << entry.name;
   }

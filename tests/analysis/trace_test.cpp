@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "analysis/stats/health_check.h"
+#include "analysis/stats/analysis.h"
 #include "analysis/trace/demangle.h"
 #include "analysis/trace/input_error.h"
 #include "tests/analysis/archive_writer.h"
@@ -107,7 +107,7 @@ TEST(Trace, RecordWhoseLastWordsAreZeroIsRead) {
   archive.Add(s);
   const Trace trace = Trace::Open(archive.path());
   EXPECT_EQ(trace.EventCount(), 2U);
-  EXPECT_TRUE(CheckArchive(trace).Sound());
+  EXPECT_TRUE(Analysis(trace).health.Sound());
 }
 
 TEST(Trace, ProcessesShareRegionsAndAreOrderedByRank) {
@@ -153,7 +153,7 @@ TEST(Trace, ForkedChildRepeatsItsParentsRankAndMayLeaveItsParentsFrames) {
   EXPECT_EQ(trace.locations()[1].rank, 0);
   EXPECT_EQ(trace.locations()[1].process, 1);
   EXPECT_EQ(trace.RankCount(), 1);
-  EXPECT_TRUE(CheckArchive(trace).Sound());
+  EXPECT_TRUE(Analysis(trace).health.Sound());
 }
 
 TEST(Trace, CountsWhatIsWrong) {
@@ -169,7 +169,8 @@ TEST(Trace, CountsWhatIsWrong) {
   s.Leave(1, 2400);
   TemporaryArchive archive;
   archive.Add(s);
-  const TraceHealth health = CheckArchive(Trace::Open(archive.path()));
+  const Trace trace = Trace::Open(archive.path());
+  const TraceHealth health = Analysis(trace).health;
   EXPECT_EQ(health.CountOf(Defect::kLeaveWithoutEnter), 1U);
   EXPECT_EQ(health.CountOf(Defect::kUncommitted), 1U);
   EXPECT_EQ(health.CountOf(Defect::kUndefinedRegion), 2U);
@@ -182,7 +183,7 @@ TEST(Trace, EmptyAndMissingArchives) {
   TemporaryArchive archive;
   const Trace trace = Trace::Open(archive.path());
   EXPECT_EQ(trace.EventCount(), 0U);
-  EXPECT_EQ(CheckArchive(trace).CountOf(Defect::kEmptyArchive), 1U);
+  EXPECT_EQ(Analysis(trace).health.CountOf(Defect::kEmptyArchive), 1U);
   EXPECT_THROW(Trace::Open(archive.path() + "/none"), InputError);
 }
 
