@@ -9,6 +9,7 @@
 #include "analysis/stats/profile.h"
 #include "analysis/stats/states.h"
 #include "analysis/stats/timeline_of.h"
+#include "analysis/trace/ranks.h"
 #include "analysis/trace/trace.h"
 
 namespace stipple {
@@ -25,7 +26,6 @@ std::string RanksText(const Trace& trace) {
 
 std::vector<std::string> FactsOf(const Analysis& analysis) {
   const Trace& trace = analysis.trace;
-  const std::uint64_t lost = analysis.health.LostEvents();
   std::vector<std::string> facts = {RanksText(trace),
                                     SecondsText(static_cast<double>(trace.SpanNs()) * 1e-9),
                                     CountText(trace.EventCount(), "event")};
@@ -33,7 +33,9 @@ std::vector<std::string> FactsOf(const Analysis& analysis) {
     facts.push_back(CountText(analysis.mpi.sends.size(), "message"));
     facts.push_back(BytesText(analysis.mpi.bytes));
   }
-  facts.push_back(lost == 0 ? "no event lost" : CountText(lost, "event") + " lost");
+  if (const std::size_t jobs = JobsOf(trace.processes()).size(); jobs > 1)
+    facts.push_back(CountText(jobs, "MPI job"));
+  facts.push_back(LossText(analysis.health));
   return facts;
 }
 

@@ -124,6 +124,16 @@ std::vector<WaitedFor> WaitedForOf(const Trace& trace, const std::vector<Blame>&
   return sorted;
 }
 
+/// The kind of wait by which most time was lost to `culprit`.
+std::string CauseOf(const std::vector<Blame>& blames, int culprit) {
+  std::map<WaitKind, double> seconds;
+  for (const Blame& b : blames)
+    if (b.culprit == culprit) seconds[b.kind] += b.seconds;
+  const auto most =
+      std::ranges::max_element(seconds, {}, &std::map<WaitKind, double>::value_type::second);
+  return std::string(NameOf(most->first));
+}
+
 /// One rank holds the others up.
 void BlameOne(const Trace& trace, const std::vector<RankStates>& states,
               const std::vector<Blame>& blames, Finding& f) {
@@ -146,6 +156,7 @@ void BlameOne(const Trace& trace, const std::vector<RankStates>& states,
     if (std::ranges::find(victims, s.rank) != victims.end())
       span += static_cast<double>(s.SpanNs()) * 1e-9;
   f.culprit = first.rank;
+  f.cause = CauseOf(blames, first.rank);
   f.sentence = words.Many(victims) + (victims.size() == 1 ? " spends " : " spend ") +
                PercentText(waited, span) + " of the run waiting for " + words.One(first.rank);
   const double mean = waited / static_cast<double>(victims.size());
@@ -186,6 +197,7 @@ void BlameNobody(const Analysis& analysis, const Selection& selection, const Tot
 void BlameImbalance(const Trace& trace, const Totals& totals, Finding& f) {
   const Words words(trace);
   const WaitedFor& first = f.waited_for.front();
+  f.cause = "imbalance";
   f.sentence = "The " + words.Noun() + "s wait for each other " +
                PercentText(totals.idle, totals.span) + " of the run; the busiest computes " +
                Number("%.2f", f.max_over_mean) + " times the mean";
@@ -214,6 +226,7 @@ Finding FindingOf(const Analysis& analysis, const Selection& selection,
   Finding f;
   f.waited_for = WaitedForOf(trace, blames);
   f.max_over_mean = MaxOverMean(trace, states);
+  f.idle_share = totals.span > 0 ? totals.idle / totals.span : 0;
   double blamed = 0;
   for (const WaitedFor& w : f.waited_for) blamed += w.seconds;
   if (totals.span <= 0) {

@@ -71,12 +71,26 @@ TableAnswer Waits(const Analysis& analysis, const Selection& selection, bool) {
   return {WaitsTable(analysis.trace, blames), finding.sentence};
 }
 
+TableAnswer Imbalance(const Analysis& analysis, const Selection& selection, bool) {
+  Table table{"imbalance",
+              TableShape::kObject,
+              {{"max_over_mean"}, {"idle_share"}, {"cause"}, {"sentence"}},
+              {}};
+  const std::vector<Blame> blames =
+      BlameOf(analysis.trace, analysis.mpi, analysis.waits, selection);
+  const Finding f = FindingOf(analysis, selection, blames);
+  if (!analysis.trace.locations().empty())
+    table.rows.push_back({f.max_over_mean, f.idle_share, f.cause, f.sentence});
+  return {std::move(table), f.sentence};
+}
+
 constexpr std::array kTables = {
     TableEntry{"profile", Profile, "time and calls per region, most exclusive time first", true},
     TableEntry{"states", States, "user, system, message and idle time of each rank"},
     TableEntry{"messages", Messages, "how many messages each rank sent to each (sender = row)"},
     TableEntry{"volume", Volume, "how many bytes each rank sent to each (sender = row)"},
-    TableEntry{"waits", Waits, "who waited for whom, why, and what the late rank was doing"}};
+    TableEntry{"waits", Waits, "who waited for whom, why, and what the late rank was doing"},
+    TableEntry{"imbalance", Imbalance, "how unevenly the ranks compute, what it costs and why"}};
 
 }  // namespace
 

@@ -9,6 +9,8 @@
 #include <string>
 #include <tuple>
 
+#include "analysis/trace/ranks.h"
+
 namespace stipple {
 namespace {
 
@@ -140,19 +142,21 @@ class WaitFinder {
 
   /// The end of MPI is entered by all before any leaves it.
   void Finalize() {
-    std::vector<CollectiveEvent> members;
+    std::map<int, std::vector<CollectiveEvent>> jobs;  // by first rank
     for (std::uint32_t c = 0; c < mpi_.calls.size(); ++c) {
       const MpiCall& call = mpi_.calls[c];
       const Location& l = trace_.locations()[call.location];
-      if (!l.IsMain() || trace_.regions()[call.region].name != "MPI_Finalize") continue;
+      const Process& p = trace_.ProcessOf(l);
+      if (!l.IsMain() || !p.in_world || trace_.regions()[call.region].name != "MPI_Finalize")
+        continue;
       CollectiveEvent m;
       m.rank = l.rank;
       m.region = call.region;
       m.enter_ns = call.begin_ns;
       m.end_call = c;
-      members.push_back(m);
+      jobs[FirstRankOf(p)].push_back(m);
     }
-    if (!members.empty()) Collective(members);
+    for (const auto& [first_rank, members] : jobs) Collective(members);
   }
 
   const Trace& trace_;

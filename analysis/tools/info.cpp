@@ -8,6 +8,7 @@
 #include "analysis/stats/analysis.h"
 #include "analysis/tools/command.h"
 #include "analysis/tools/progress.h"
+#include "analysis/trace/ranks.h"
 
 namespace stipple {
 namespace {
@@ -40,6 +41,18 @@ Json RecordedJson(const Trace& trace) {
   return recorded;
 }
 
+/// Null: more than can be counted.
+Json LostJson(const TraceHealth& health) {
+  return health.LostUncounted() ? Json(nullptr) : Json(health.LostEvents());
+}
+
+Json JobsJson(const Trace& trace) {
+  Json jobs = Json::array();
+  for (const Job& j : JobsOf(trace.processes()))
+    jobs.push_back({{"program", j.program}, {"first_rank", j.first_rank}, {"ranks", j.rank_count}});
+  return jobs;
+}
+
 std::string InfoJson(const Analysis& info) {
   const Trace& trace = info.trace;
   Json locations = Json::array();
@@ -52,13 +65,19 @@ std::string InfoJson(const Analysis& info) {
   for (const Problem& p : info.health.problems())
     problems.push_back(
         {{"problem", EntryOf(p.defect).name}, {"where", p.where}, {"count", p.count}});
-  const Json json = {
-      {"program", trace.Program()},        {"locations", locations},
-      {"ranks", trace.RankCount()},        {"processes", trace.processes().size()},
-      {"events", trace.EventCount()},      {"lost", info.health.LostEvents()},
-      {"messages", info.mpi.matched},      {"unmatched_messages", info.mpi.Unmatched()},
-      {"span_s", Seconds(trace.SpanNs())}, {"clock", ClockJson(info)},
-      {"recorded", RecordedJson(trace)},   {"problems", problems}};
+  const Json json = {{"program", trace.Program()},
+                     {"locations", locations},
+                     {"ranks", trace.RankCount()},
+                     {"processes", trace.processes().size()},
+                     {"events", trace.EventCount()},
+                     {"lost", LostJson(info.health)},
+                     {"messages", info.mpi.matched},
+                     {"unmatched_messages", info.mpi.Unmatched()},
+                     {"span_s", Seconds(trace.SpanNs())},
+                     {"clock", ClockJson(info)},
+                     {"recorded", RecordedJson(trace)},
+                     {"jobs", JobsJson(trace)},
+                     {"problems", problems}};
   return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -79,8 +98,7 @@ std::string InfoText(const Analysis& info) {
   const auto rank_count = static_cast<std::uint64_t>(trace.RankCount());
   std::string text = fmt::format(
       "{}: {} on {} in {}, {}\n", trace.path(), CountText(trace.EventCount(), "event"),
-      CountText(rank_count, "rank"), SecondsText(Seconds(trace.SpanNs())),
-      info.health.LostEvents() == 0 ? "none lost" : CountText(info.health.LostEvents()) + " lost");
+      CountText(rank_count, "rank"), SecondsText(Seconds(trace.SpanNs())), LossText(info.health));
   text += fmt::format("program    {}\n", trace.Program());
   text += fmt::format("processes  {}\n", trace.processes().size());
   text += fmt::format("threads    {}\n", trace.locations().size());

@@ -64,7 +64,9 @@ int RunStats(const Arguments& arguments) {
   const Analysis analysis(trace);
   const TableAnswer answer = entry.make(analysis, selection, per_rank);
   progress.Stop();
-  if (form.name == "text") WriteOut(answer.headline + "\n\n");
+  const bool empty = trace.EventCount() == 0;
+  if (form.name == "text")
+    WriteOut((empty ? "The archive holds no events." : answer.headline) + "\n\n");
   WriteOut(form.text(answer.table));
   WarnOfProblems(trace, analysis.health);
   return 0;

@@ -128,10 +128,12 @@ void UnifyCommunicators(std::vector<Process>& processes, std::vector<Communicato
       // Those without a parent are told apart by their fixed number: 1 is the world, 2 is self.
       const bool root = d.parent == 0;
       const std::uint32_t parent = root ? d.communicator : p.CommunicatorOf(d.parent);
-      const std::int32_t first = d.world_ranks.empty() ? -1 : d.world_ranks.front();
+      std::vector<std::int32_t> ranks = d.world_ranks;  // of the program; then of the archive
+      for (std::int32_t& rank : ranks) rank += rank < 0 ? 0 : FirstRankOf(p);
+      const std::int32_t first = ranks.empty() ? -1 : ranks.front();
       const auto [number, is_new] =
           unifier.NumberOf({root ? 0 : 1 + parent, root ? d.communicator : 0, d.creation, first});
-      if (is_new) communicators.push_back({d.world_ranks});
+      if (is_new) communicators.push_back({std::move(ranks)});
       Assign(p.communicators, d.communicator, number);
     }
   }
@@ -188,8 +190,15 @@ void Trace::ReadStreams(const std::vector<std::string>& files) {
     TellRead(bytes[i]);
   });
   for (const TraceHealth& health : healths) health_.Add(health);
-  for (auto& stream : streams)
-    if (stream) streams_.push_back(std::move(stream));
+  for (auto& stream : streams) {
+    if (!stream) continue;
+    // Of a process of which nothing is left only the loss is known: it is no further rank.
+    if (stream->threads.empty() && !stream->world) {
+      health_.Add(stream->health);
+    } else {
+      streams_.push_back(std::move(stream));
+    }
+  }
 }
 
 Trace Trace::Open(const std::string& path, ReadMeter* meter) {
@@ -209,12 +218,12 @@ Trace Trace::Open(const std::string& path, ReadMeter* meter) {
   if (trace.streams_.empty()) trace.health_.Add(Defect::kEmptyArchive, "");
   for (const auto& stream : trace.streams_) trace.health_.Add(stream->health);
   trace.clocks_ = CorrectClocks(trace.streams_, trace.health_);
-  trace.processes_ = NumberProcesses(trace.streams_, trace.health_);
+  trace.processes_ = NumberProcesses(trace.streams_);
   trace.UnifyDefinitions();
   trace.PlaceLocations();
   std::vector<bool> seen;
   for (const Process& p : trace.processes_) {
-    const int world = p.stream->world ? p.stream->world->world_size : 0;
+    const int world = p.in_world ? FirstRankOf(p) + p.stream->world->world_size : 0;
     trace.rank_count_ = std::max({trace.rank_count_, p.rank + 1, world});
     seen.resize(std::max(seen.size(), static_cast<std::size_t>(trace.rank_count_)));
     seen[static_cast<std::size_t>(p.rank)] = true;
@@ -267,7 +276,11 @@ bool Trace::IsHost(int rank) const {
 
 bool Trace::HasHost() const { return std::ranges::any_of(processes_, &Process::is_host); }
 
-std::string Trace::RankName(int rank) const { return IsHost(rank) ? "host" : std::to_string(rank); }
+std::string Trace::RankName(int rank) const {
+  // Of several programs each may have a host: then their numbers tell them apart.
+  const bool only = std::ranges::count_if(processes_, &Process::is_host) == 1;
+  return only && IsHost(rank) ? "host" : std::to_string(rank);
+}
 
 std::string Trace::Program() const {
   for (const Location& l : locations_)

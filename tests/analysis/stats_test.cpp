@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 
+#include "analysis/report/progress_text.h"
 #include "analysis/report/text.h"
 #include "analysis/stats/finding_of.h"
 #include "analysis/stats/message_matrix.h"
@@ -11,6 +12,7 @@
 #include "analysis/stats/states.h"
 #include "analysis/stats/tables.h"
 #include "analysis/stats/timeline_of.h"
+#include "analysis/trace/ranks.h"
 #include "tests/analysis/archive_writer.h"
 
 namespace stipple {
@@ -337,6 +339,64 @@ TEST(Timeline, ColumnsHoldTheStatesExactly) {
     EXPECT_NEAR(idle * 4000 / static_cast<double>(columns), 1900, 0.5);
     EXPECT_EQ(t.message_count, 1U);
   }
+}
+
+// Two runs of an MPI program of two ranks, one after the other, in one archive.
+TEST(Jobs, AreKeptApartAndMatchedEach) {
+  std::vector<Rank> ranks{Rank(0, 2), Rank(1, 2), Rank(0, 2), Rank(1, 2)};
+  for (std::size_t i = 0; i < 4; ++i) {
+    ranks[i].stream.header.pid = static_cast<std::uint32_t>(i + 1);
+    ranks[i].stream.header.parent_pid = i < 2 ? 100 : 200;
+    ranks[i].stream.header.start_realtime_ns = 1'000'000'000 + i * 1000;
+  }
+  ranks[0].Send(1, 1, 1100, 1110);
+  ranks[1].Receive(0, 1, 1100, 1120);
+  ranks[2].Send(1, 1, 5000, 5010, 100);
+  ranks[3].Receive(0, 1, 2000, 5020);
+  ranks[0].Call(kWork, 1200, 1300);
+  for (Rank& r : ranks) r.End(6000);
+  const Written w(ranks);
+  const Analysis analysis(w.trace);
+  EXPECT_TRUE(analysis.health.Sound());
+  EXPECT_EQ(w.trace.RankCount(), 4);
+  EXPECT_EQ(JobsOf(w.trace.processes()).size(), 2U);
+  EXPECT_EQ(TableJson(VolumeTable(analysis, {})),
+            "{\"rows\":[\"0\",\"1\",\"2\",\"3\"],\"columns\":[\"0\",\"1\",\"2\",\"3\"],"
+            "\"values\":[[0,8,0,0],[0,0,0,0],[0,0,0,100],[0,0,0,0]]}\n");
+  const Finding f = FindingOf(w.trace);
+  EXPECT_EQ(f.culprit, 2);
+  EXPECT_EQ(f.cause, "late-sender");
+}
+
+TEST(Imbalance, IsOneObjectWithTheCauseOrNone) {
+  const Written late(LateSender());
+  const TableEntry& entry = *std::ranges::find(TableEntries(), "imbalance", &TableEntry::name);
+  const Table table = entry.make(Analysis(late.trace), {}, false).table;
+  EXPECT_EQ(std::get<std::string>(table.rows[0][2]), "late-sender");
+  EXPECT_EQ(TableJson(table).substr(0, 17), "{\"max_over_mean\":");
+  std::vector<Rank> ranks{Rank(0, 2), Rank(1, 2)};
+  for (Rank& r : ranks) r.End(4000);
+  const Written even(ranks);
+  const Table healthy = entry.make(Analysis(even.trace), {}, false).table;
+  EXPECT_EQ(std::get<std::string>(healthy.rows[0][2]), "none");
+  EXPECT_EQ(Number(healthy.rows[0][1]), 0);
+}
+
+TEST(Progress, SaysNothingForHalfASecondThenHowLongItWillTake) {
+  ReadMeter meter;
+  ProgressText progress(100);
+  EXPECT_EQ(progress.At(meter.Now(), 101), "");
+  meter.Begin("reading", 12'000'000'000);
+  ProgressText quick(100);
+  EXPECT_EQ(quick.At(meter.Now(), 100.0), "");
+  meter.Add(3'000'000'000);
+  EXPECT_EQ(quick.At(meter.Now(), 100.4), "");
+  EXPECT_EQ(quick.At(meter.Now(), 101), "reading 3.0 of 12.0 GB, 3 s left");
+  meter.Add(3'000'000'000);
+  EXPECT_EQ(quick.At(meter.Now(), 202), "reading 6.0 of 12.0 GB, 102 s left");
+  EXPECT_EQ(quick.At(meter.Now(), 500), "reading 6.0 of 12.0 GB, 7 min left");
+  meter.Begin("drawing", 0);
+  EXPECT_EQ(quick.At(meter.Now(), 600), "drawing");
 }
 
 TEST(Tables, EachNameOccursOnceAndWorksOnAnEmptyArchive) {

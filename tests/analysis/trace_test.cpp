@@ -201,6 +201,33 @@ TEST(Trace, DamagedFileHeaderDoesNotHideTheEvents) {
   EXPECT_EQ(trace.Health().CountOf(Defect::kBadFileHeader), 1U);
 }
 
+// A process that ends cuts off what it had allocated ahead.
+TEST(Trace, StreamThatIsCutWhileItIsReadLosesItsEndOnly) {
+  StreamWriter s = Program();
+  for (std::uint64_t chunk = 0; chunk < 8; ++chunk) {
+    s.NewChunk(1000 + chunk * 1000);
+    s.Enter(1, 1100 + chunk * 1000);
+    s.Leave(1, 1200 + chunk * 1000);
+  }
+  TemporaryArchive archive;
+  archive.Add(s);
+  const Trace trace = Trace::Open(archive.path());
+  for (const auto& file : std::filesystem::directory_iterator(archive.path()))
+    std::filesystem::resize_file(file, 5 * kGranuleBytes);
+  EXPECT_EQ(trace.EventCount(), 6U);  // header, definitions, three chunks are left
+}
+
+TEST(Trace, WhatCannotBeCountedIsNotCalledNothing) {
+  StreamWriter s = Program();
+  s.NewChunk(1000);
+  s.Enter(1, 2000);
+  TemporaryArchive archive;
+  archive.Add(s);
+  EXPECT_FALSE(Trace::Open(archive.path()).Health().LostUncounted());
+  archive.AddBytes("2", "");
+  EXPECT_TRUE(Trace::Open(archive.path()).Health().LostUncounted());
+}
+
 TEST(Trace, MissingRankIsReported) {
   StreamWriter s = Program();
   s.World(1, 3);

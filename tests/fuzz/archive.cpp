@@ -4,6 +4,7 @@
 // sound.
 #include <cstdio>
 #include <cstdlib>
+#include <iterator>
 #include <random>
 #include <string>
 
@@ -28,9 +29,11 @@ void Require(bool condition, const char* what, int round) {
   std::exit(1);
 }
 
-/// Every kind of record, nested calls, two ranks that talk, two threads, several chunks.
-StreamWriter GoodStream(std::int32_t rank) {
-  StreamWriter s(static_cast<std::uint32_t>(rank + 1));
+/// Every kind of record, nested calls, two ranks that talk, two threads, several chunks; of the
+/// first or the second of two MPI jobs.
+StreamWriter GoodStream(std::int32_t rank, std::uint32_t job) {
+  StreamWriter s(static_cast<std::uint32_t>(rank + 1) + 2 * job);
+  s.header.parent_pid = 100 + job;
   s.World(rank, 2);
   s.Region(1, "main");
   s.Region(2, "_ZN4work4stepEi");
@@ -108,14 +111,15 @@ void ReadAll(const TemporaryArchive& archive, int round) {
 }
 
 int Main(int rounds) {
-  const std::string good[] = {GoodStream(0).Bytes(), GoodStream(1).Bytes()};
+  const std::string good[] = {GoodStream(0, 0).Bytes(), GoodStream(1, 0).Bytes(),
+                              GoodStream(0, 1).Bytes(), GoodStream(1, 1).Bytes()};
   for (int round = 0; round < rounds; ++round) {
     Random random(static_cast<std::uint64_t>(round));
     TemporaryArchive archive;
-    for (int rank = 0; rank < 2; ++rank) {
-      std::string bytes = good[rank];
-      if (round != 0) Damage(bytes, random);
-      archive.AddBytes(std::to_string(rank), bytes);
+    for (std::size_t i = 0; i < std::size(good); ++i) {
+      std::string bytes = good[i];
+      if (round != 0 && random() % 4 != 0) Damage(bytes, random);
+      archive.AddBytes(std::to_string(i), bytes);
     }
     if (round == 0) {
       const Trace trace = Trace::Open(archive.path());
