@@ -5,11 +5,11 @@
 
 #include "analysis/report/text.h"
 #include "analysis/stats/finding_of.h"
-#include "analysis/stats/health_check.h"
 #include "analysis/stats/message_matrix.h"
 #include "analysis/stats/profile.h"
 #include "analysis/stats/states.h"
 #include "analysis/stats/timeline_of.h"
+#include "analysis/trace/ranks.h"
 #include "analysis/trace/trace.h"
 
 namespace stipple {
@@ -24,9 +24,8 @@ std::string RanksText(const Trace& trace) {
   return CountText(count - 1, "node") + " and a host";
 }
 
-std::vector<std::string> FactsOf(const Analysis& analysis, const TraceHealth& health) {
+std::vector<std::string> FactsOf(const Analysis& analysis) {
   const Trace& trace = analysis.trace;
-  const std::uint64_t lost = health.LostEvents();
   std::vector<std::string> facts = {RanksText(trace),
                                     SecondsText(static_cast<double>(trace.SpanNs()) * 1e-9),
                                     CountText(trace.EventCount(), "event")};
@@ -34,7 +33,9 @@ std::vector<std::string> FactsOf(const Analysis& analysis, const TraceHealth& he
     facts.push_back(CountText(analysis.mpi.sends.size(), "message"));
     facts.push_back(BytesText(analysis.mpi.bytes));
   }
-  facts.push_back(lost == 0 ? "no event lost" : CountText(lost, "event") + " lost");
+  if (const std::size_t jobs = JobsOf(trace.processes()).size(); jobs > 1)
+    facts.push_back(CountText(jobs, "MPI job"));
+  facts.push_back(LossText(analysis.health));
   return facts;
 }
 
@@ -51,23 +52,22 @@ Timeline DetailOf(const Analysis& analysis, const Timeline& whole, std::size_t c
 
 }  // namespace
 
-ReportInput ReportInputOf(const Trace& trace, std::size_t columns) {
-  const Analysis analysis(trace);
+ReportInput ReportInputOf(const Analysis& analysis, std::size_t columns) {
+  const Trace& trace = analysis.trace;
   const Selection all;
   const std::vector<Blame> blames = BlameOf(trace, analysis.mpi, analysis.waits, all);
-  const TraceHealth health = CheckArchive(trace);
   ReportInput input;
   input.title = trace.Program();
   input.finding = FindingOf(analysis, all, blames);
-  input.facts = FactsOf(analysis, health);
+  input.facts = FactsOf(analysis);
   input.timeline = TimelineOf(analysis, 0, static_cast<double>(trace.SpanNs()) * 1e-9, columns);
   input.detail = DetailOf(analysis, input.timeline, columns);
   input.states = StatesTable(StatesOf(analysis, all));
   input.messages = MessagesTable(analysis, all);
   input.volume = VolumeTable(analysis, all);
-  input.profile = ProfileTable(trace, all, false);
+  input.profile = ProfileTable(analysis, all, false);
   input.waits = WaitsTable(trace, blames);
-  for (const Problem& p : health.problems()) input.health.push_back(TextOf(p));
+  for (const Problem& p : analysis.health.problems()) input.health.push_back(TextOf(p));
   return input;
 }
 

@@ -14,7 +14,7 @@
 
 namespace stipple {
 
-class Trace;
+struct Analysis;
 
 struct ReportInput {
   std::string title;  // the traced program
@@ -32,7 +32,7 @@ struct ReportInput {
 };
 
 /// Computes all of the above. `columns`: of each timeline.
-ReportInput ReportInputOf(const Trace& trace, std::size_t columns);
+ReportInput ReportInputOf(const Analysis& analysis, std::size_t columns);
 
 }  // namespace stipple
 

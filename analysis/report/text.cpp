@@ -131,6 +131,7 @@ std::string TableJson(const Table& table) {
     for (std::size_t c = 0; c < row.size(); ++c) object[table.columns[c].name] = CellJson(row[c]);
     rows.push_back(std::move(object));
   }
+  if (table.shape == TableShape::kObject) return Dumped(rows.empty() ? Json::object() : rows[0]);
   return Dumped(rows);
 }
 
@@ -142,6 +143,14 @@ std::string CountText(std::uint64_t count) {
 
 std::string CountText(std::uint64_t count, std::string_view noun) {
   return fmt::format("{} {}{}", CountText(count), noun, count == 1 ? "" : "s");
+}
+
+std::string LossText(const TraceHealth& health) {
+  const std::uint64_t lost = health.LostEvents();
+  if (!health.LostUncounted())
+    return lost == 0 ? "no event lost" : CountText(lost, "event") + " lost";
+  return lost == 0 ? "an unknown number of events lost"
+                   : "at least " + CountText(lost, "event") + " lost";
 }
 
 std::string BytesText(std::uint64_t bytes) {

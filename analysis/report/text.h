@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "analysis/stats/table.h"
+#include "analysis/trace/health.h"
 
 namespace stipple {
 
@@ -15,13 +16,15 @@ namespace stipple {
 std::string TableText(const Table& table);
 /// RFC 4180; what was not recorded is an empty field.
 std::string TableCsv(const Table& table);
-/// An array of objects, or {"rows","columns","values"} for a matrix, and a newline.
+/// An array of objects, an object, or {"rows","columns","values"} for a matrix, and a newline.
 std::string TableJson(const Table& table);
 
 /// "1 204"
 std::string CountText(std::uint64_t count);
 /// "1 event", "2 events"
 std::string CountText(std::uint64_t count, std::string_view noun);
+/// "no event lost", "3 events lost", "an unknown number of events lost"
+std::string LossText(const TraceHealth& health);
 /// "12.4 MB"
 std::string BytesText(std::uint64_t bytes);
 /// "12.3 ms"

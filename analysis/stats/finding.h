@@ -24,6 +24,9 @@ struct Finding {
   int culprit = -1;                   // world rank; -1: none
   std::vector<WaitedFor> waited_for;  // sorted, most first
   double max_over_mean = 1;           // of the ranks' computing time
+  double idle_share = 0;              // of the ranks' time (the host's left out)
+  std::string cause =
+      "none";  // of the waiting: a kind of wait; "imbalance": nobody's in particular
 };
 
 }  // namespace stipple

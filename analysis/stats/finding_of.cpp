@@ -148,6 +148,16 @@ std::vector<int> CulpritsOf(const Trace& trace, const std::vector<RankStates>& s
   return culprits;
 }
 
+/// The kind of wait by which most time was lost to `culprit`.
+std::string CauseOf(const std::vector<Blame>& blames, int culprit) {
+  std::map<WaitKind, double> seconds;
+  for (const Blame& b : blames)
+    if (b.culprit == culprit) seconds[b.kind] += b.seconds;
+  const auto most =
+      std::ranges::max_element(seconds, {}, &std::map<WaitKind, double>::value_type::second);
+  return std::string(NameOf(most->first));
+}
+
 /// One rank holds the others up.
 void BlameOne(const Trace& trace, const std::vector<RankStates>& states,
               const std::vector<Blame>& blames, Finding& f) {
@@ -171,6 +181,7 @@ void BlameOne(const Trace& trace, const std::vector<RankStates>& states,
       span += static_cast<double>(s.SpanNs()) * 1e-9;
   const std::vector<int> culprits = CulpritsOf(trace, states, first.rank, victims);
   f.culprit = first.rank;
+  f.cause = CauseOf(blames, first.rank);
   f.sentence = Capitalised(words.Many(victims)) + (victims.size() == 1 ? " spends " : " spend ") +
                PercentText(waited, span) + " of the run waiting for " + words.Many(culprits);
   if (!first.region.empty())
@@ -183,14 +194,12 @@ void BlameOne(const Trace& trace, const std::vector<RankStates>& states,
 }
 
 /// The region in which the ranks compute most, and its share of the computing time.
-std::pair<std::string, double> BusiestRegion(const Trace& trace, const Selection& selection) {
-  std::vector<double> sums(trace.regions().size());
-  for (const Location& l : trace.locations()) {
-    if (!l.IsMain() || !selection.HasRank(l.rank)) continue;
-    const std::vector<RegionTime> times = ProfileOf(trace, l, selection);
-    for (std::size_t r = 0; r < times.size(); ++r)
-      if (trace.regions()[r].kind != RegionKind::kMpi) sums[r] += times[r].exclusive_ns;
-  }
+std::pair<std::string, double> BusiestRegion(const Analysis& analysis, const Selection& selection) {
+  const Trace& trace = analysis.trace;
+  const std::vector<RegionTime> times = SumOfMains(analysis, selection);
+  std::vector<double> sums(times.size());
+  for (std::size_t r = 0; r < times.size(); ++r)
+    if (trace.regions()[r].kind != RegionKind::kMpi) sums[r] = times[r].exclusive_ns;
   if (sums.empty()) return {};
   const auto most = std::ranges::max_element(sums);
   const double sum = std::accumulate(sums.begin(), sums.end(), 0.0);
@@ -199,9 +208,10 @@ std::pair<std::string, double> BusiestRegion(const Trace& trace, const Selection
           *most / sum};
 }
 
-void BlameNobody(const Trace& trace, const Selection& selection, const Totals& totals, Finding& f) {
-  const auto [region, share] = BusiestRegion(trace, selection);
-  const Words words(trace);
+void BlameNobody(const Analysis& analysis, const Selection& selection, const Totals& totals,
+                 Finding& f) {
+  const auto [region, share] = BusiestRegion(analysis, selection);
+  const Words words(analysis.trace);
   f.sentence = "No " + words.Noun() +
                " waits for another: " + PercentText(totals.user, totals.span) +
                " of the time is computation";
@@ -213,6 +223,7 @@ void BlameNobody(const Trace& trace, const Selection& selection, const Totals& t
 void BlameImbalance(const Trace& trace, const Totals& totals, Finding& f) {
   const Words words(trace);
   const WaitedFor& first = f.waited_for.front();
+  f.cause = "imbalance";
   f.sentence = "The " + words.Noun() + "s wait for each other " +
                PercentText(totals.idle, totals.span) + " of the run; the busiest computes " +
                Number("%.2f", f.max_over_mean) + " times the mean";
@@ -241,12 +252,13 @@ Finding FindingOf(const Analysis& analysis, const Selection& selection,
   Finding f;
   f.waited_for = WaitedForOf(trace, blames);
   f.max_over_mean = MaxOverMean(trace, states);
+  f.idle_share = totals.span > 0 ? totals.idle / totals.span : 0;
   double blamed = 0;
   for (const WaitedFor& w : f.waited_for) blamed += w.seconds;
   if (totals.span <= 0) {
     f.sentence = "The archive holds no events";
   } else if (f.waited_for.empty() || totals.idle < kNotableShare * totals.span) {
-    BlameNobody(trace, selection, totals, f);
+    BlameNobody(analysis, selection, totals, f);
   } else if (f.waited_for.front().seconds >= kBlameShare * blamed) {
     BlameOne(trace, states, blames, f);
   } else {

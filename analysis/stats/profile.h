@@ -6,31 +6,32 @@
 #include <cstdint>
 #include <vector>
 
+#include "analysis/stats/analysis.h"
 #include "analysis/stats/selection.h"
 #include "analysis/stats/table.h"
 #include "analysis/trace/trace.h"
 
 namespace stipple {
 
-/// Visits of one region. Inclusive time counts nested visits of the same region once.
-struct RegionTime {
-  std::uint64_t calls = 0;  // entered in the selected span
-  double inclusive_ns = 0;
-  double exclusive_ns = 0;
-};
+class ProfileVisitor;
 
 /// Visits on one location.
 ///
-/// Shape:  indexed by region of the archive.
+/// Shape:  the regions that were visited, by number; one may occur twice: sum them.
 /// Units:  nanoseconds of common time; frames open at the location's end end there.
 /// Errors: none; leaves without enter are ignored, missing leaves end with the frame below.
 /// Source: Graham, Kessler, McKusick, "gprof", SIGPLAN Notices 17(6), 1982.
-std::vector<RegionTime> ProfileOf(const Trace& trace, const Location& location,
-                                  const Selection& selection);
+LocationProfile ProfileOf(const Trace& trace, const Location& location, const Selection& selection);
+/// The same from a finished visitor.
+LocationProfile ProfileFrom(const Trace& trace, const Location& location,
+                            const ProfileVisitor& visitor, bool whole_time);
+
+/// Sums over the selected ranks' main threads, indexed by region of the archive.
+std::vector<RegionTime> SumOfMains(const Analysis& analysis, const Selection& selection);
 
 /// Rows region, file, line, calls, inclusive_s, exclusive_s, most exclusive time first; summed over
 /// locations, or with `per_rank` one row for each rank and region.
-Table ProfileTable(const Trace& trace, const Selection& selection, bool per_rank);
+Table ProfileTable(const Analysis& analysis, const Selection& selection, bool per_rank);
 
 }  // namespace stipple
 

@@ -32,6 +32,7 @@ struct Column {
 
 enum class TableShape {
   kRows,    // JSON: array of objects
+  kObject,  // JSON: an object; one row
   kMatrix,  // JSON: {"rows","columns","values"}; the first column holds the row's name, the others
             // are the columns
 };

@@ -16,8 +16,8 @@
 namespace stipple {
 namespace {
 
-TableAnswer Profile(const Trace& trace, const Selection& selection, bool per_rank) {
-  TableAnswer answer{ProfileTable(trace, selection, per_rank), "No region was visited."};
+TableAnswer Profile(const Analysis& analysis, const Selection& selection, bool per_rank) {
+  TableAnswer answer{ProfileTable(analysis, selection, per_rank), "No region was visited."};
   const auto& rows = answer.table.rows;
   if (rows.empty()) return answer;
   double sum = 0;
@@ -29,8 +29,8 @@ TableAnswer Profile(const Trace& trace, const Selection& selection, bool per_ran
   return answer;
 }
 
-TableAnswer States(const Trace& trace, const Selection& selection, bool) {
-  const std::vector<RankStates> states = StatesOf(Analysis(trace), selection);
+TableAnswer States(const Analysis& analysis, const Selection& selection, bool) {
+  const std::vector<RankStates> states = StatesOf(analysis, selection);
   double span = 0;
   double user = 0;
   double idle = 0;
@@ -52,23 +52,36 @@ std::int64_t SumOf(const Table& matrix) {
   return sum;
 }
 
-TableAnswer Messages(const Trace& trace, const Selection& selection, bool) {
-  Table table = MessagesTable(Analysis(trace), selection);
+TableAnswer Messages(const Analysis& analysis, const Selection& selection, bool) {
+  Table table = MessagesTable(analysis, selection);
   std::string headline = std::to_string(SumOf(table)) + " messages were sent (sender = row).";
   return {std::move(table), std::move(headline)};
 }
 
-TableAnswer Volume(const Trace& trace, const Selection& selection, bool) {
-  Table table = VolumeTable(Analysis(trace), selection);
+TableAnswer Volume(const Analysis& analysis, const Selection& selection, bool) {
+  Table table = VolumeTable(analysis, selection);
   std::string headline = std::to_string(SumOf(table)) + " bytes were sent (sender = row).";
   return {std::move(table), std::move(headline)};
 }
 
-TableAnswer Waits(const Trace& trace, const Selection& selection, bool) {
-  const Analysis analysis(trace);
-  const std::vector<Blame> blames = BlameOf(trace, analysis.mpi, analysis.waits, selection);
+TableAnswer Waits(const Analysis& analysis, const Selection& selection, bool) {
+  const std::vector<Blame> blames =
+      BlameOf(analysis.trace, analysis.mpi, analysis.waits, selection);
   const Finding finding = FindingOf(analysis, selection, blames);
-  return {WaitsTable(trace, blames), finding.sentence};
+  return {WaitsTable(analysis.trace, blames), finding.sentence};
+}
+
+TableAnswer Imbalance(const Analysis& analysis, const Selection& selection, bool) {
+  Table table{"imbalance",
+              TableShape::kObject,
+              {{"max_over_mean"}, {"idle_share"}, {"cause"}, {"sentence"}},
+              {}};
+  const std::vector<Blame> blames =
+      BlameOf(analysis.trace, analysis.mpi, analysis.waits, selection);
+  const Finding f = FindingOf(analysis, selection, blames);
+  if (!analysis.trace.locations().empty())
+    table.rows.push_back({f.max_over_mean, f.idle_share, f.cause, f.sentence});
+  return {std::move(table), f.sentence};
 }
 
 constexpr std::array kTables = {
@@ -76,7 +89,8 @@ constexpr std::array kTables = {
     TableEntry{"states", States, "user, system, message and idle time of each rank"},
     TableEntry{"messages", Messages, "how many messages each rank sent to each (sender = row)"},
     TableEntry{"volume", Volume, "how many bytes each rank sent to each (sender = row)"},
-    TableEntry{"waits", Waits, "who waited for whom, why, and what the late rank was doing"}};
+    TableEntry{"waits", Waits, "who waited for whom, why, and what the late rank was doing"},
+    TableEntry{"imbalance", Imbalance, "how unevenly the ranks compute, what it costs and why"}};
 
 }  // namespace
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <string_view>
 
+#include "analysis/stats/analysis.h"
 #include "analysis/stats/selection.h"
 #include "analysis/stats/table.h"
-#include "analysis/trace/trace.h"
 
 namespace stipple {
 
@@ -19,7 +19,7 @@ struct TableAnswer {
   std::string headline;
 };
 
-using TableFunction = TableAnswer (*)(const Trace& trace, const Selection& selection,
+using TableFunction = TableAnswer (*)(const Analysis& analysis, const Selection& selection,
                                       bool per_rank);
 
 struct TableEntry {

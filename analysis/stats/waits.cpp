@@ -9,6 +9,8 @@
 #include <string>
 #include <tuple>
 
+#include "analysis/trace/ranks.h"
+
 namespace stipple {
 namespace {
 
@@ -142,19 +144,21 @@ class WaitFinder {
 
   /// The end of MPI is entered by all before any leaves it.
   void Finalize() {
-    std::vector<CollectiveEvent> members;
+    std::map<int, std::vector<CollectiveEvent>> jobs;  // by first rank
     for (std::uint32_t c = 0; c < mpi_.calls.size(); ++c) {
       const MpiCall& call = mpi_.calls[c];
       const Location& l = trace_.locations()[call.location];
-      if (!l.IsMain() || trace_.regions()[call.region].name != "MPI_Finalize") continue;
+      const Process& p = trace_.ProcessOf(l);
+      if (!l.IsMain() || !p.in_world || trace_.regions()[call.region].name != "MPI_Finalize")
+        continue;
       CollectiveEvent m;
       m.rank = l.rank;
       m.region = call.region;
       m.enter_ns = call.begin_ns;
       m.end_call = c;
-      members.push_back(m);
+      jobs[FirstRankOf(p)].push_back(m);
     }
-    if (!members.empty()) Collective(members);
+    for (const auto& [first_rank, members] : jobs) Collective(members);
   }
 
   const Trace& trace_;
@@ -350,15 +354,16 @@ std::vector<Blame> BlameOf(const Trace& trace, const MpiActivity& mpi,
     const auto& [waiter, culprit, kind] = key;
     blames.push_back({waiter, culprit, kind, static_cast<double>(ns) * 1e-9, 0});
   }
-  for (const auto& [culprit, pieces] : charger.pieces) {
-    const Location* l = trace.MainOf(culprit);
-    if (l == nullptr) continue;
-    CulpritVisitor visitor(trace, *l, pieces);
-    trace.Scan(*l, visitor);
+  std::vector<const Location*> culprits;
+  for (const auto& [culprit, pieces] : charger.pieces)
+    if (const Location* l = trace.MainOf(culprit)) culprits.push_back(l);
+  trace.ForEachOf(culprits, "finding who was late", [&](const Location& l) {
+    CulpritVisitor visitor(trace, l, charger.pieces.at(l.rank));
+    trace.Scan(l, visitor);
     visitor.Finish();
     for (Blame& b : blames)
-      if (b.culprit == culprit) b.region = trace.ProcessOf(*l).regions[visitor.MostOf(b.kind)];
-  }
+      if (b.culprit == l.rank) b.region = trace.ProcessOf(l).regions[visitor.MostOf(b.kind)];
+  });
   std::ranges::stable_sort(blames, std::greater<>(), &Blame::seconds);
   return blames;
 }

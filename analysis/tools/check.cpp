@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include "analysis/report/text.h"
-#include "analysis/stats/health_check.h"
+#include "analysis/stats/analysis.h"
 #include "analysis/tools/command.h"
+#include "analysis/tools/progress.h"
 
 namespace stipple {
 
@@ -14,8 +15,10 @@ int RunCheck(const Arguments& arguments) {
   std::string archive;
   app.add_option("A", archive, "the archive")->required();
   if (!Parse(app, arguments)) return 0;
-  const Trace trace = Trace::Open(archive);
-  const TraceHealth health = CheckArchive(trace);
+  ProgressLine progress;
+  const Trace trace = Trace::Open(archive, progress.meter());
+  const TraceHealth health = Analysis(trace).health;
+  progress.Stop();
   std::string text;
   for (const Problem& p : health.problems()) text += TextOf(p) + "\n";
   if (health.Sound())

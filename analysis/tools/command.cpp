@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "analysis/trace/input_error.h"
+#include "analysis/trace/ranks.h"
 
 namespace stipple {
 namespace {
@@ -67,6 +68,10 @@ Selection SelectionOptions::For(const Trace& trace) const {
 }
 
 void WarnOfProblems(const Trace& trace, const TraceHealth& health) {
+  const std::vector<Job> jobs = JobsOf(trace.processes());
+  for (std::size_t i = 0; jobs.size() > 1 && i < jobs.size(); ++i)
+    fmt::print(stderr, "stipple: MPI job {} of {}: {}, ranks {} to {}\n", i + 1, jobs.size(),
+               jobs[i].program, jobs[i].first_rank, jobs[i].first_rank + jobs[i].rank_count - 1);
   constexpr std::size_t kMost = 5;
   const std::vector<Problem>& problems = health.problems();
   for (std::size_t i = 0; i < std::min(kMost, problems.size()); ++i)

@@ -5,23 +5,19 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/report/text.h"
+#include "analysis/stats/analysis.h"
 #include "analysis/tools/command.h"
-#include "analysis/trace/mpi_activity.h"
+#include "analysis/tools/progress.h"
+#include "analysis/trace/ranks.h"
 
 namespace stipple {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Info {
-  const Trace& trace;
-  const MpiActivity& mpi;
-  const TraceHealth& health;
-};
-
 double Seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
-Json ClockJson(const Info& info) {
+Json ClockJson(const Analysis& info) {
   const ClockReport& clock = info.trace.clock();
   const auto& processes = info.trace.processes();
   return {{"kind", clock.kind == ClockKind::kVirtual ? "virtual" : "tsc"},
@@ -45,7 +41,19 @@ Json RecordedJson(const Trace& trace) {
   return recorded;
 }
 
-std::string InfoJson(const Info& info) {
+/// Null: more than can be counted.
+Json LostJson(const TraceHealth& health) {
+  return health.LostUncounted() ? Json(nullptr) : Json(health.LostEvents());
+}
+
+Json JobsJson(const Trace& trace) {
+  Json jobs = Json::array();
+  for (const Job& j : JobsOf(trace.processes()))
+    jobs.push_back({{"program", j.program}, {"first_rank", j.first_rank}, {"ranks", j.rank_count}});
+  return jobs;
+}
+
+std::string InfoJson(const Analysis& info) {
   const Trace& trace = info.trace;
   Json locations = Json::array();
   for (const Location& l : trace.locations())
@@ -57,17 +65,23 @@ std::string InfoJson(const Info& info) {
   for (const Problem& p : info.health.problems())
     problems.push_back(
         {{"problem", EntryOf(p.defect).name}, {"where", p.where}, {"count", p.count}});
-  const Json json = {
-      {"program", trace.Program()},        {"locations", locations},
-      {"ranks", trace.RankCount()},        {"processes", trace.processes().size()},
-      {"events", trace.EventCount()},      {"lost", info.health.LostEvents()},
-      {"messages", info.mpi.matched},      {"unmatched_messages", info.mpi.Unmatched()},
-      {"span_s", Seconds(trace.SpanNs())}, {"clock", ClockJson(info)},
-      {"recorded", RecordedJson(trace)},   {"problems", problems}};
+  const Json json = {{"program", trace.Program()},
+                     {"locations", locations},
+                     {"ranks", trace.RankCount()},
+                     {"processes", trace.processes().size()},
+                     {"events", trace.EventCount()},
+                     {"lost", LostJson(info.health)},
+                     {"messages", info.mpi.matched},
+                     {"unmatched_messages", info.mpi.Unmatched()},
+                     {"span_s", Seconds(trace.SpanNs())},
+                     {"clock", ClockJson(info)},
+                     {"recorded", RecordedJson(trace)},
+                     {"jobs", JobsJson(trace)},
+                     {"problems", problems}};
   return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::string ClockText(const Info& info) {
+std::string ClockText(const Analysis& info) {
   const ClockReport& clock = info.trace.clock();
   if (clock.kind == ClockKind::kVirtual) return "virtual time";
   if (clock.computers <= 1)
@@ -79,13 +93,12 @@ std::string ClockText(const Info& info) {
                      CountText(info.mpi.reversed, "message"));
 }
 
-std::string InfoText(const Info& info) {
+std::string InfoText(const Analysis& info) {
   const Trace& trace = info.trace;
   const auto rank_count = static_cast<std::uint64_t>(trace.RankCount());
   std::string text = fmt::format(
       "{}: {} on {} in {}, {}\n", trace.path(), CountText(trace.EventCount(), "event"),
-      CountText(rank_count, "rank"), SecondsText(Seconds(trace.SpanNs())),
-      info.health.LostEvents() == 0 ? "none lost" : CountText(info.health.LostEvents()) + " lost");
+      CountText(rank_count, "rank"), SecondsText(Seconds(trace.SpanNs())), LossText(info.health));
   text += fmt::format("program    {}\n", trace.Program());
   text += fmt::format("processes  {}\n", trace.processes().size());
   text += fmt::format("threads    {}\n", trace.locations().size());
@@ -113,13 +126,12 @@ int RunInfo(const Arguments& arguments) {
   app.add_option("A", archive, "the archive")->required();
   app.add_flag("--json", json, "as one JSON object");
   if (!Parse(app, arguments)) return 0;
-  const Trace trace = Trace::Open(archive);
-  const MpiActivity mpi = ReadMpiActivity(trace);
-  TraceHealth health = trace.Health();
-  health.Add(mpi.health);
-  const Info info{trace, mpi, health};
-  WriteOut(json ? InfoJson(info) : InfoText(info));
-  if (!json) WarnOfProblems(trace, health);
+  ProgressLine progress;
+  const Trace trace = Trace::Open(archive, progress.meter());
+  const Analysis analysis(trace);
+  progress.Stop();
+  WriteOut(json ? InfoJson(analysis) : InfoText(analysis));
+  if (!json) WarnOfProblems(trace, analysis.health);
   return 0;
 }
 

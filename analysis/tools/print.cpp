@@ -2,12 +2,15 @@
 // stipple print: events as text, all locations in one order of time; canonical: one location after
 // the other.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <queue>
 #include <vector>
 
 #include "analysis/report/event_text.h"
+#include "analysis/stats/analysis.h"
 #include "analysis/tools/command.h"
+#include "analysis/tools/progress.h"
 
 namespace stipple {
 namespace {
@@ -108,9 +111,18 @@ int RunPrint(const Arguments& arguments) {
   app.add_flag("--canonical", canonical, "for comparing: location after location, no times or ids");
   selection.AddTo(app);
   if (!Parse(app, arguments)) return 0;
-  const Trace trace = Trace::Open(archive);
-  (canonical ? PrintCanonical : PrintMerged)(trace, selection.For(trace));
-  WarnOfProblems(trace, trace.Health());
+  ProgressLine progress;
+  const Trace trace = Trace::Open(archive, progress.meter());
+  const Selection selected = selection.For(trace);
+  if (isatty(STDOUT_FILENO) != 0) progress.Stop();  // the events are progress enough
+  std::uint64_t bytes = 0;
+  for (const Location& l : trace.locations())
+    if (selected.HasRank(l.rank)) bytes += l.stream->Bytes();
+  trace.BeginPhase("printing", bytes);
+  (canonical ? PrintCanonical : PrintMerged)(trace, selected);
+  const TraceHealth health = Analysis(trace).health;
+  progress.Stop();
+  WarnOfProblems(trace, health);
   return 0;
 }
 

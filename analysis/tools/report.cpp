@@ -7,7 +7,9 @@
 #include <filesystem>
 
 #include "analysis/report/report_input.h"
+#include "analysis/stats/analysis.h"
 #include "analysis/tools/command.h"
+#include "analysis/tools/progress.h"
 #include "analysis/trace/input_error.h"
 
 namespace stipple {
@@ -39,17 +41,21 @@ int RunReport(const Arguments& arguments) {
   if (!Parse(app, arguments)) return 0;
   while (archive.size() > 1 && archive.back() == '/') archive.pop_back();
   if (output.empty()) output = std::filesystem::path(archive).stem().string() + ".html";
-  const Trace trace = Trace::Open(archive);
   const DrawFunction draw = OpenViews();
-  ReportInput input = ReportInputOf(trace, kColumns);
+  ProgressLine progress;
+  const Trace trace = Trace::Open(archive, progress.meter());
+  const Analysis analysis(trace);
+  ReportInput input = ReportInputOf(analysis, kColumns);
   input.mono = mono;
+  trace.BeginPhase("drawing the page", 0);
   std::array<char, 1024> error{};
-  if (draw(&input, output.c_str(), error.data(), error.size()) != 0)
-    throw InputError(output, error.data());
+  const int failed = draw(&input, output.c_str(), error.data(), error.size());
+  progress.Stop();
+  if (failed != 0) throw InputError(output, error.data());
   std::string text = input.finding.sentence + "\n";
   if (!input.finding.detail.empty()) text += input.finding.detail + "\n";
   WriteOut(text + output + "\n");
-  WarnOfProblems(trace, trace.Health());
+  WarnOfProblems(trace, analysis.health);
   return 0;
 }
 

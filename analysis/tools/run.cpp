@@ -153,13 +153,12 @@ void Summarise(const RunOptions& options, int status) {
   }
   const Trace trace = Trace::Open(archive);
   const TraceHealth health = trace.Health();
-  const std::uint64_t lost = health.LostEvents();
   fmt::print(stderr, "stipple: recorded {} in {} of {}: {}, {}{}\n",
              CountText(trace.EventCount(), "event"),
              fmt::format("{} process{}", trace.processes().size(),
                          trace.processes().size() == 1 ? "" : "es"),
              CountText(static_cast<std::uint64_t>(trace.RankCount()), "rank"),
-             BytesText(BytesOnDisk(archive)), lost == 0 ? "none lost" : CountText(lost) + " lost",
+             BytesText(BytesOnDisk(archive)), LossText(health),
              health.Sound() ? "" : fmt::format(" (problems: stipple check {})", archive));
   fmt::print(stderr, "stipple: next: stipple report {} -o {}.html\n", archive,
              fs::path(archive).stem().string());

@@ -7,6 +7,7 @@
 #include "analysis/report/text.h"
 #include "analysis/stats/tables.h"
 #include "analysis/tools/command.h"
+#include "analysis/tools/progress.h"
 #include "analysis/trace/input_error.h"
 
 namespace stipple {
@@ -57,11 +58,17 @@ int RunStats(const Arguments& arguments) {
   // `states` is by rank anyway.
   if (per_rank && !entry.per_rank && entry.name != "states")
     throw InputError("--per-rank", fmt::format("table '{}' cannot be given by rank", entry.name));
-  const Trace trace = Trace::Open(archive);
-  const TableAnswer answer = entry.make(trace, selected.For(trace), per_rank);
-  if (form.name == "text") WriteOut(answer.headline + "\n\n");
+  ProgressLine progress;
+  const Trace trace = Trace::Open(archive, progress.meter());
+  const Selection selection = selected.For(trace);
+  const Analysis analysis(trace);
+  const TableAnswer answer = entry.make(analysis, selection, per_rank);
+  progress.Stop();
+  const bool empty = trace.EventCount() == 0;
+  if (form.name == "text")
+    WriteOut((empty ? "The archive holds no events." : answer.headline) + "\n\n");
   WriteOut(form.text(answer.table));
-  WarnOfProblems(trace, trace.Health());
+  WarnOfProblems(trace, analysis.health);
   return 0;
 }
 

@@ -8,14 +8,15 @@ namespace stipple {
 namespace {
 
 constexpr std::array kDefects = {
-    DefectEntry{Defect::kEmptyArchive, "empty-archive", "archive holds no stream",
-                "archives hold no stream"},
+    DefectEntry{Defect::kEmptyArchive, "empty-archive", "archive holds no stream with events",
+                "archives hold no stream with events"},
     DefectEntry{Defect::kUnreadableFile, "unreadable-file", "file cannot be read",
                 "files cannot be read"},
     DefectEntry{Defect::kBadFileHeader, "bad-file-header", "file header is damaged",
                 "file headers are damaged"},
-    DefectEntry{Defect::kTruncatedFile, "truncated-file", "chunk is cut off by the end of the file",
-                "chunks are cut off by the end of the file"},
+    DefectEntry{Defect::kTruncatedFile, "truncated-file",
+                "header or chunk is cut off by the end of the file",
+                "headers or chunks are cut off by the end of the file"},
     DefectEntry{Defect::kBadChunk, "bad-chunk", "16 KiB block is damaged and was skipped",
                 "16 KiB blocks are damaged and were skipped"},
     DefectEntry{Defect::kMissingChunk, "missing-chunk", "chunk of events is missing",
@@ -43,10 +44,10 @@ constexpr std::array kDefects = {
     DefectEntry{Defect::kUnclosedProcess, "unclosed-process",
                 "process did not end in order (killed?)",
                 "processes did not end in order (killed?)"},
+    DefectEntry{Defect::kStillRunning, "still-running",
+                "process is still running: this is what it has recorded so far",
+                "processes are still running: this is what they have recorded so far"},
     DefectEntry{Defect::kMissingRank, "missing-rank", "rank has no stream", "ranks have no stream"},
-    DefectEntry{Defect::kDuplicateRank, "duplicate-rank",
-                "further process claims this rank; its messages are not matched",
-                "further processes claim this rank; their messages are not matched"},
     DefectEntry{Defect::kUnmatchedSend, "unmatched-send", "sent message was never received",
                 "sent messages were never received"},
     DefectEntry{Defect::kUnmatchedReceive, "unmatched-receive",
@@ -98,6 +99,13 @@ std::uint64_t TraceHealth::CountOf(Defect defect) const {
 std::uint64_t TraceHealth::LostEvents() const {
   return CountOf(Defect::kLostEvents) + CountOf(Defect::kUncommitted) +
          CountOf(Defect::kOpenRecord);
+}
+
+bool TraceHealth::LostUncounted() const {
+  constexpr std::array kUncounted = {
+      Defect::kEmptyArchive, Defect::kUnreadableFile, Defect::kTruncatedFile, Defect::kBadChunk,
+      Defect::kMissingChunk, Defect::kBadRecord,      Defect::kMissingRank};
+  return std::ranges::any_of(kUncounted, [this](Defect d) { return CountOf(d) != 0; });
 }
 
 }  // namespace stipple

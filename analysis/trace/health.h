@@ -30,8 +30,8 @@ enum class Defect {
   kUndefinedCommunicator,
   kLeaveWithoutEnter,
   kUnclosedProcess,
+  kStillRunning,
   kMissingRank,
-  kDuplicateRank,
   kUnmatchedSend,
   kUnmatchedReceive,
   kIncompleteCollective,
@@ -65,8 +65,10 @@ class TraceHealth {
   void Add(const TraceHealth& other);
 
   std::uint64_t CountOf(Defect defect) const;
-  /// Events that happened and cannot be read.
+  /// Events that happened and cannot be read, as far as they can be counted.
   std::uint64_t LostEvents() const;
+  /// More were lost than LostEvents, and nobody knows how many.
+  bool LostUncounted() const;
   bool Sound() const { return problems_.empty(); }
   const std::vector<Problem>& problems() const { return problems_; }
 

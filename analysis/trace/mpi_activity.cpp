@@ -11,159 +11,7 @@
 namespace stipple {
 namespace {
 
-struct Post {
-  std::uint32_t request;
-  std::uint32_t order;
-  std::int64_t time_ns;
-};
-
-struct RequestEnd {
-  std::uint32_t request;
-  std::uint32_t outcome;
-  std::uint32_t call;
-};
-
 constexpr std::uint32_t kCancelled = 2;
-
-/// What one process did; requests of one thread may end in another.
-struct ProcessActivity {
-  std::vector<SendEvent> sends;
-  std::vector<ReceiveEvent> receives;
-  std::vector<Post> posts;
-  std::vector<RequestEnd> ends;
-  std::vector<CollectiveEvent> collectives;
-  std::uint64_t undefined_communicators = 0;
-};
-
-/// Sees the events of one location.
-class Collector {
- public:
-  Collector(const Trace& trace, const Location& location, MpiActivity& all, ProcessActivity& out)
-      : trace_(trace),
-        location_(location),
-        process_(trace.ProcessOf(location)),
-        calls_(all.calls),
-        all_(all),
-        out_(out) {
-    for (const std::uint32_t region : process_.regions)
-      is_mpi_.push_back(trace.regions()[region].kind == RegionKind::kMpi);
-  }
-
-  void Function(std::uint32_t region, bool leave, std::uint64_t ticks) {
-    if (is_mpi_[region] == 0) return;
-    Mpi(region, leave, ticks);
-  }
-
-  void Record(const EventWord* record, std::uint64_t ticks) {
-    if (KindOf(*record) == RecordKind::kMark) return Marked(RecordAt<Mark>(record), ticks);
-    if (!process_.in_world) return;
-    switch (KindOf(*record)) {
-      case RecordKind::kMpiSend:
-        return Send(RecordAt<MpiSend>(record), ticks);
-      case RecordKind::kMpiReceivePost: {
-        const auto r = RecordAt<MpiReceivePost>(record);
-        out_.posts.push_back({r.request, order_++, trace_.TimeNs(location_, ticks)});
-        return;
-      }
-      case RecordKind::kMpiReceive:
-        return Receive(RecordAt<MpiReceive>(record), ticks);
-      case RecordKind::kMpiRequestEnd: {
-        const auto r = RecordAt<MpiRequestEnd>(record);
-        out_.ends.push_back({r.request, r.outcome, call_});
-        return;
-      }
-      case RecordKind::kMpiCollective:
-        return Collective(RecordAt<MpiCollective>(record), ticks);
-      case RecordKind::kMpiProbe:
-        return Probe(RecordAt<MpiProbe>(record), ticks);
-      default:
-        return;
-    }
-  }
-
-  /// A call that is open at the end of the location ends there.
-  void Finish() {
-    if (depth_ > 0) calls_[call_].end_ns = location_.end_ns;
-  }
-
- private:
-  void Mpi(std::uint32_t region, bool leave, std::uint64_t ticks) {
-    if (!leave) {
-      if (depth_++ != 0) return;
-      call_ = static_cast<std::uint32_t>(calls_.size());
-      call_order_ = order_++;
-      const std::int64_t now = trace_.TimeNs(location_, ticks);
-      calls_.push_back(
-          {now, now, process_.regions[region], static_cast<std::uint32_t>(location_.index)});
-    } else if (depth_ > 0 && --depth_ == 0) {
-      calls_[call_].end_ns = trace_.TimeNs(location_, ticks);
-      call_ = kNoIndex;
-    }
-  }
-
-  /// The communicator of the archive, or 0, counted.
-  std::uint32_t Defined(std::uint32_t communicator) {
-    const std::uint32_t c = process_.CommunicatorOf(communicator);
-    if (c == 0) ++out_.undefined_communicators;
-    return c;
-  }
-  const Communicator& At(std::uint32_t c) const { return trace_.communicators()[c]; }
-  std::int64_t CallBegin(std::uint64_t ticks) const {
-    return call_ == kNoIndex ? trace_.TimeNs(location_, ticks) : calls_[call_].begin_ns;
-  }
-
-  void Marked(const Mark& r, std::uint64_t ticks) {
-    all_.marks.push_back({trace_.TimeNs(location_, ticks), process_.NameOf(r.name),
-                          static_cast<std::uint32_t>(location_.index)});
-  }
-
-  void Send(const MpiSend& r, std::uint64_t ticks) {
-    const std::uint32_t c = Defined(r.communicator);
-    if (c == 0) return;
-    const Channel channel{c, location_.rank, At(c).WorldRank(r.receiver), r.tag};
-    out_.sends.push_back({channel, r.bytes, CallBegin(ticks), order_++, r.request, call_,
-                          r.request == 0 ? call_ : kNoIndex, kNoIndex});
-  }
-
-  void Receive(const MpiReceive& r, std::uint64_t ticks) {
-    const std::uint32_t c = Defined(r.communicator);
-    if (c == 0) return;
-    const Channel channel{c, At(c).WorldRank(r.sender), location_.rank, r.tag};
-    out_.receives.push_back({channel, r.bytes, CallBegin(ticks), trace_.TimeNs(location_, ticks),
-                             call_ == kNoIndex ? order_ : call_order_, r.request, call_, kNoIndex});
-    ++order_;
-  }
-
-  void Collective(const MpiCollective& r, std::uint64_t ticks) {
-    const std::uint32_t c = Defined(r.communicator);
-    if (c == 0) return;
-    const std::uint32_t region =
-        r.region < process_.regions.size() ? process_.regions[r.region] : 0;
-    out_.collectives.push_back({c, 0, location_.rank, At(c).WorldRank(r.root), region,
-                                CallBegin(ticks), order_++, r.request,
-                                r.request == 0 ? call_ : kNoIndex});
-  }
-
-  void Probe(const MpiProbe& r, std::uint64_t ticks) {
-    const std::uint32_t c = Defined(r.communicator);
-    if (c == 0) return;
-    all_.probes.push_back({{c, At(c).WorldRank(r.sender), location_.rank, r.tag},
-                           trace_.TimeNs(location_, ticks),
-                           call_});
-  }
-
-  const Trace& trace_;
-  const Location& location_;
-  const Process& process_;
-  std::vector<MpiCall>& calls_;
-  MpiActivity& all_;
-  ProcessActivity& out_;
-  std::vector<std::uint8_t> is_mpi_;
-  std::uint32_t depth_ = 0;
-  std::uint32_t call_ = kNoIndex;  // open
-  std::uint32_t call_order_ = 0;
-  std::uint32_t order_ = 0;
-};
 
 template <class Item>
 const Item* Find(const std::vector<Item>& sorted, std::uint32_t request) {
@@ -172,12 +20,12 @@ const Item* Find(const std::vector<Item>& sorted, std::uint32_t request) {
 }
 
 /// Ties requests to where they were posted and where they ended.
-void JoinRequests(ProcessActivity& p) {
-  std::ranges::stable_sort(p.posts, {}, &Post::request);
+void JoinRequests(LocationActivity& p) {
+  std::ranges::stable_sort(p.posts, {}, &ReceivePost::request);
   std::ranges::stable_sort(p.ends, {}, &RequestEnd::request);
   for (ReceiveEvent& r : p.receives) {
     if (r.request == 0) continue;
-    if (const Post* post = Find(p.posts, r.request)) {
+    if (const ReceivePost* post = Find(p.posts, r.request)) {
       r.post_ns = post->time_ns;
       r.order = post->order;
     }
@@ -208,9 +56,42 @@ void NumberCollectives(std::vector<CollectiveEvent>& collectives) {
   }
 }
 
+/// Moves `more` behind `all`.
 template <class Item>
 void Append(std::vector<Item>& all, std::vector<Item>& more) {
-  all.insert(all.end(), more.begin(), more.end());
+  if (all.empty()) {
+    all = std::move(more);
+  } else {
+    all.insert(all.end(), more.begin(), more.end());
+  }
+  more = {};
+}
+
+void Shift(std::uint32_t& call, std::uint32_t base) {
+  if (call != kNoIndex) call += base;
+}
+
+/// Makes calls, counted within the location, those of all; moves all that needs no more joining.
+void TakeLocation(LocationActivity& from, MpiActivity& all, LocationActivity& process) {
+  const auto base = static_cast<std::uint32_t>(all.calls.size());
+  for (SendEvent& s : from.sends) {
+    Shift(s.call, base);
+    Shift(s.end_call, base);
+  }
+  for (ReceiveEvent& r : from.receives) Shift(r.end_call, base);
+  for (RequestEnd& e : from.ends) Shift(e.call, base);
+  for (ProbeEvent& p : from.probes) Shift(p.call, base);
+  for (CollectiveEvent& c : from.collectives) Shift(c.end_call, base);
+  Append(all.calls, from.calls);
+  Append(all.marks, from.marks);
+  Append(all.probes, from.probes);
+  Append(process.sends, from.sends);
+  Append(process.receives, from.receives);
+  Append(process.posts, from.posts);
+  Append(process.ends, from.ends);
+  Append(process.collectives, from.collectives);
+  process.undefined_communicators += from.undefined_communicators;
+  process.undefined_names += from.undefined_names;
 }
 
 void CountCollectives(const Trace& trace, MpiActivity& a) {
@@ -256,23 +137,22 @@ void MatchMessages(std::vector<SendEvent>& sends, std::vector<ReceiveEvent>& rec
   }
 }
 
-MpiActivity ReadMpiActivity(const Trace& trace) {
+MpiActivity JoinActivity(const Trace& trace, std::vector<LocationActivity> locations) {
   MpiActivity a;
-  std::vector<ProcessActivity> processes(trace.processes().size());
-  for (const Location& l : trace.locations()) {
-    Collector collector(trace, l, a, processes[l.process_index]);
-    trace.Scan(l, collector);
-    collector.Finish();
-  }
+  // Requests of one thread may end in another: they are joined by process.
+  std::vector<LocationActivity> processes(trace.processes().size());
+  for (const Location& l : trace.locations())
+    TakeLocation(locations[l.index], a, processes[l.process_index]);
   for (std::size_t i = 0; i < processes.size(); ++i) {
-    ProcessActivity& p = processes[i];
+    LocationActivity& p = processes[i];
     JoinRequests(p);
     NumberCollectives(p.collectives);
     Append(a.sends, p.sends);
     Append(a.receives, p.receives);
     Append(a.collectives, p.collectives);
-    a.health.Add(Defect::kUndefinedCommunicator, trace.processes()[i].stream->file_name,
-                 p.undefined_communicators);
+    const std::string& where = trace.processes()[i].stream->file_name;
+    a.health.Add(Defect::kUndefinedName, where, p.undefined_names);
+    a.health.Add(Defect::kUndefinedCommunicator, where, p.undefined_communicators);
     p = {};
   }
   std::ranges::stable_sort(

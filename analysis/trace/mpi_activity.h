@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Everything that the ranks did with MPI: calls, messages, collectives, probes. Read in one scan
-// and kept, because matching needs both ends; its size follows the number of MPI events, not of
-// function events.
+// Everything that the ranks did with MPI: calls, messages, collectives, probes. Collected in the
+// scan of each location (mpi_collector.h), then joined and kept, because matching needs both ends;
+// its size follows the number of MPI events, not of function events.
 //
 // Messages are matched by MPI's own rule that they do not overtake each other: on one communicator,
 // from one sender to one receiver with one tag, the k-th send belongs to the k-th receive in the
@@ -103,8 +103,36 @@ struct MpiActivity {
   }
 };
 
-/// Scans all locations. Messages count for MPI ranks only, calls for any location.
-MpiActivity ReadMpiActivity(const Trace& trace);
+/// Where a receive was posted.
+struct ReceivePost {
+  std::uint32_t request = 0;
+  std::uint32_t order = 0;
+  std::int64_t time_ns = 0;
+};
+
+struct RequestEnd {
+  std::uint32_t request = 0;
+  std::uint32_t outcome = 0;
+  std::uint32_t call = kNoIndex;
+};
+
+/// What one location did, as MpiCollector finds it; calls are counted within the location.
+struct LocationActivity {
+  std::vector<MpiCall> calls;
+  std::vector<SendEvent> sends;
+  std::vector<ReceiveEvent> receives;
+  std::vector<ReceivePost> posts;
+  std::vector<RequestEnd> ends;
+  std::vector<ProbeEvent> probes;
+  std::vector<CollectiveEvent> collectives;
+  std::vector<MarkEvent> marks;
+  std::uint64_t undefined_communicators = 0;
+  std::uint64_t undefined_names = 0;
+};
+
+/// Joins the locations' activities (by index of the location) and matches. Messages count for MPI
+/// ranks only, calls for any location.
+MpiActivity JoinActivity(const Trace& trace, std::vector<LocationActivity> locations);
 
 /// Pairs sends and receives in place; both are sorted by channel and order of posts.
 void MatchMessages(std::vector<SendEvent>& sends, std::vector<ReceiveEvent>& receives);

@@ -2,6 +2,7 @@
 #include "analysis/trace/ranks.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <numeric>
 #include <string>
@@ -27,43 +28,77 @@ std::size_t ParentOf(std::size_t child, std::span<const std::unique_ptr<Stream>>
   return parent;
 }
 
-void NumberMpiRanks(std::span<const std::unique_ptr<Stream>> streams,
-                    std::span<const std::size_t> by_start, std::vector<Process>& processes,
-                    TraceHealth& health) {
-  std::map<int, int> processes_of_rank;
+/// Processes of one MPI_COMM_WORLD.
+struct World {
+  std::int32_t size = 0;
+  std::map<std::int32_t, std::size_t> stream_of_rank;
+};
+
+/// Whether the process can be of this world: its rank is free, it was begun before another member
+/// ended, and, when members of its computer are known, one has the same parent (the launcher).
+bool Fits(const Stream& s, const World& world, std::span<const std::unique_ptr<Stream>> streams,
+          bool same_parent) {
+  if (world.size != s.world->world_size || world.stream_of_rank.contains(s.world->world_rank))
+    return false;
+  bool parent = false;
+  for (const auto& [rank, member] : world.stream_of_rank) {
+    const Stream& m = *streams[member];
+    if (m.boot_id != s.boot_id) continue;
+    if (m.end && m.end->raw_ns < s.header.start_raw_ns) return false;
+    parent |= m.header.parent_pid == s.header.parent_pid;
+  }
+  return parent || !same_parent;
+}
+
+/// MPI programs that ran one after the other, or beside each other, have worlds of their own.
+std::vector<World> WorldsOf(std::span<const std::unique_ptr<Stream>> streams,
+                            std::span<const std::size_t> by_start) {
+  std::vector<World> worlds;
   for (const std::size_t s : by_start) {
     if (!streams[s]->world) continue;
-    processes[s].rank = streams[s]->world->world_rank;
-    processes[s].process = processes_of_rank[processes[s].rank]++;
-    processes[s].in_world = processes[s].process == 0;
-    if (!processes[s].in_world)
-      health.Add(Defect::kDuplicateRank, "rank " + std::to_string(processes[s].rank));
+    World* found = nullptr;
+    for (const bool same_parent : {true, false})
+      for (World& w : worlds)
+        if (found == nullptr && Fits(*streams[s], w, streams, same_parent)) found = &w;
+    if (found == nullptr) {
+      found = &worlds.emplace_back();
+      found->size = streams[s]->world->world_size;
+    }
+    found->stream_of_rank[streams[s]->world->world_rank] = s;
   }
+  return worlds;
+}
+
+/// Ranks of the first world, then those of the second one, and so on. Returns how many.
+int NumberMpiRanks(std::span<const std::unique_ptr<Stream>> streams,
+                   std::span<const std::size_t> by_start, std::vector<Process>& processes) {
+  int first_rank = 0;
+  for (const World& world : WorldsOf(streams, by_start)) {
+    for (const auto& [rank, s] : world.stream_of_rank) {
+      processes[s].rank = first_rank + rank;
+      processes[s].in_world = true;
+    }
+    first_rank += world.size;
+  }
+  return first_rank;
 }
 
 }  // namespace
 
-std::vector<Process> NumberProcesses(std::span<const std::unique_ptr<Stream>> streams,
-                                     TraceHealth& health) {
+std::vector<Process> NumberProcesses(std::span<const std::unique_ptr<Stream>> streams) {
   std::vector<std::size_t> by_start(streams.size());
   std::iota(by_start.begin(), by_start.end(), 0);
   std::ranges::stable_sort(by_start, {}, [&](std::size_t s) {
     return std::pair(streams[s]->header.start_realtime_ns, streams[s]->header.pid);
   });
   std::vector<Process> processes(streams.size());
-  NumberMpiRanks(streams, by_start, processes, health);
-  int next_rank = 0;
+  int next_rank = NumberMpiRanks(streams, by_start, processes);
   for (std::size_t s = 0; s < streams.size(); ++s) {
     processes[s].stream = streams[s].get();
     processes[s].is_host = streams[s]->is_host;
-    if (streams[s]->world) next_rank = std::max(next_rank, streams[s]->world->world_size);
   }
   const bool mpi = next_rank > 0;
   std::map<int, int> last_process;
-  for (std::size_t s = 0; s < streams.size(); ++s)
-    if (streams[s]->world)
-      last_process[processes[s].rank] =
-          std::max(last_process[processes[s].rank], processes[s].process);
   for (const std::size_t s : by_start) {
     if (streams[s]->world) continue;
     const bool has_parent = streams[s]->header.forked == 1 || mpi;
@@ -78,6 +113,20 @@ std::vector<Process> NumberProcesses(std::span<const std::unique_ptr<Stream>> st
     }
   }
   return processes;
+}
+
+std::vector<Job> JobsOf(std::span<const Process> processes) {
+  std::map<int, Job> by_rank;
+  for (const Process& p : processes) {
+    if (!p.in_world) continue;
+    Job& job = by_rank[FirstRankOf(p)];
+    job.first_rank = FirstRankOf(p);
+    job.rank_count = p.stream->world->world_size;
+    if (job.program.empty()) job.program = std::filesystem::path(p.stream->program).filename();
+  }
+  std::vector<Job> jobs;
+  for (const auto& [rank, job] : by_rank) jobs.push_back(job);
+  return jobs;
 }
 
 }  // namespace stipple

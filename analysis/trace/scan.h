@@ -171,12 +171,15 @@ bool ScanSome(const ThreadStream& thread, std::uint32_t region_count, std::uint6
   return true;
 }
 
-/// Scans the whole thread.
-template <class Visitor>
-ScanCounts ScanThread(const ThreadStream& thread, std::uint32_t region_count, Visitor& visitor) {
+/// Scans the whole thread; `chunk_done(bytes)` is called behind each chunk.
+template <class Visitor, class ChunkDone>
+ScanCounts ScanThread(const ThreadStream& thread, std::uint32_t region_count, Visitor& visitor,
+                      ChunkDone&& chunk_done) {
   ScanCounts counts;
   ScanPosition at;
-  while (ScanSome(thread, region_count, kNoTickLimit, at, counts, visitor)) {
+  for (const Chunk& chunk : thread.chunks) {
+    ScanSome(thread, region_count, kNoTickLimit, at, counts, visitor);
+    chunk_done(chunk.Bytes());
   }
   return counts;
 }

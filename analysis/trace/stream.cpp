@@ -2,14 +2,19 @@
 #include "analysis/trace/stream.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <map>
+#include <mutex>
 
 namespace stipple {
 namespace {
@@ -20,7 +25,13 @@ constexpr std::uint64_t kKnownFeatures = 0;
 // the other, so one far above the count of definitions is damage.
 constexpr std::uint32_t kNumberSlack = 1 << 16;
 
-std::string TextOf(const char* text, std::size_t size) { return {text, strnlen(text, size)}; }
+/// Up to the first zero; what would not print, because of damage, is a question mark.
+std::string TextOf(const char* text, std::size_t size) {
+  std::string out(text, strnlen(text, size));
+  std::ranges::replace_if(
+      out, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
+  return out;
+}
 
 /// A definition chunk's record being read, with bounds.
 struct DefinitionReader {
@@ -320,6 +331,36 @@ void MendTimes(std::vector<Chunk>& chunks, Stream& stream) {
   }
 }
 
+/// The process has the stream still mapped.
+bool IsRunning(const Stream& stream) {
+  std::ifstream maps("/proc/" + std::to_string(stream.header.pid) + "/maps");
+  const std::string text{std::istreambuf_iterator<char>(maps), {}};
+  return text.find("/" + stream.file_name) != std::string::npos;
+}
+
+/// A page of the mapping that the file no longer has (a process that ends cuts its stream while it
+/// is being read; a disk fails) becomes zeros, which are words never written.
+void FillLostPage(int, siginfo_t* info, void*) {
+  static const long page_bytes = sysconf(_SC_PAGESIZE);
+  const auto address = reinterpret_cast<std::uintptr_t>(info->si_addr);
+  void* page = reinterpret_cast<void*>(address & ~static_cast<std::uintptr_t>(page_bytes - 1));
+  if (info->si_code != BUS_ADRERR ||
+      mmap(page, static_cast<std::size_t>(page_bytes), PROT_READ,
+           MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED, -1, 0) == MAP_FAILED)
+    signal(SIGBUS, SIG_DFL);
+}
+
+/// Mappings of streams are the only ones of files that may shrink.
+void SurviveLostPages() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    struct sigaction action = {};
+    action.sa_sigaction = FillLostPage;
+    action.sa_flags = SA_SIGINFO | SA_RESTART;
+    sigaction(SIGBUS, &action, nullptr);
+  });
+}
+
 bool ReadHeader(Stream& stream, TraceHealth& health) {
   const std::span<const std::byte> file = stream.file.bytes();
   if (file.size() < sizeof(FileHeader)) {
@@ -357,6 +398,7 @@ std::optional<MappedFile> MappedFile::Open(const std::string& path) {
   void* data = bytes == 0 ? nullptr : mmap(nullptr, bytes, PROT_READ, MAP_SHARED, fd, 0);
   close(fd);
   if (data == MAP_FAILED) return std::nullopt;
+  SurviveLostPages();
   if (data != nullptr) madvise(data, bytes, MADV_SEQUENTIAL);
   return MappedFile(static_cast<const std::byte*>(data), bytes);
 }
@@ -392,7 +434,9 @@ std::unique_ptr<Stream> ReadStream(const std::string& path, TraceHealth& health)
   for (const Chunk& chunk : found.definitions) ReadDefinitions(chunk, *stream);
   stream->lost = std::max(stream->lost, lost);
   stream->health.Add(Defect::kLostEvents, file_name, stream->lost);
-  if (!stream->end) stream->health.Add(Defect::kUnclosedProcess, file_name);
+  if (!stream->end)
+    stream->health.Add(IsRunning(*stream) ? Defect::kStillRunning : Defect::kUnclosedProcess,
+                       file_name);
   return stream;
 }
 

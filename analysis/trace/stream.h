@@ -42,6 +42,10 @@ struct Chunk {
   std::uint64_t ticks = 0;
   std::uint64_t raw_ns = 0;
   std::uint64_t lost = 0;
+
+  std::uint64_t Bytes() const {
+    return static_cast<std::uint64_t>(end - begin) * sizeof(EventWord) + sizeof(ChunkHeader);
+  }
 };
 
 /// Event chunks of one thread, in order.
@@ -50,6 +54,12 @@ struct ThreadStream {
   std::uint32_t tid = 0;
   std::string name;
   std::vector<Chunk> chunks;
+
+  std::uint64_t Bytes() const {
+    std::uint64_t bytes = 0;
+    for (const Chunk& c : chunks) bytes += c.Bytes();
+    return bytes;
+  }
 };
 
 /// Definitions as the process wrote them, with its own numbers; text lies in the mapping.

@@ -6,11 +6,13 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <tuple>
 #include <unordered_map>
 
 #include "analysis/trace/demangle.h"
 #include "analysis/trace/input_error.h"
+#include "analysis/trace/parallel.h"
 #include "analysis/trace/ranks.h"
 
 namespace stipple {
@@ -126,10 +128,12 @@ void UnifyCommunicators(std::vector<Process>& processes, std::vector<Communicato
       // Those without a parent are told apart by their fixed number: 1 is the world, 2 is self.
       const bool root = d.parent == 0;
       const std::uint32_t parent = root ? d.communicator : p.CommunicatorOf(d.parent);
-      const std::int32_t first = d.world_ranks.empty() ? -1 : d.world_ranks.front();
+      std::vector<std::int32_t> ranks = d.world_ranks;  // of the program; then of the archive
+      for (std::int32_t& rank : ranks) rank += rank < 0 ? 0 : FirstRankOf(p);
+      const std::int32_t first = ranks.empty() ? -1 : ranks.front();
       const auto [number, is_new] =
           unifier.NumberOf({root ? 0 : 1 + parent, root ? d.communicator : 0, d.creation, first});
-      if (is_new) communicators.push_back({d.world_ranks});
+      if (is_new) communicators.push_back({std::move(ranks)});
       Assign(p.communicators, d.communicator, number);
     }
   }
@@ -171,7 +175,33 @@ void Trace::PlaceLocations() {
   counts_.resize(locations_.size());
 }
 
-Trace Trace::Open(const std::string& path) {
+void Trace::ReadStreams(const std::vector<std::string>& files) {
+  std::vector<std::uint64_t> bytes;
+  for (const std::string& file : files) {
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(file, error);
+    bytes.push_back(error ? 0 : size);
+  }
+  BeginPhase("opening", std::accumulate(bytes.begin(), bytes.end(), std::uint64_t{0}));
+  std::vector<std::unique_ptr<Stream>> streams(files.size());
+  std::vector<TraceHealth> healths(files.size());
+  ForEachIndex(files.size(), [&](std::size_t i) {
+    streams[i] = ReadStream(files[i], healths[i]);
+    TellRead(bytes[i]);
+  });
+  for (const TraceHealth& health : healths) health_.Add(health);
+  for (auto& stream : streams) {
+    if (!stream) continue;
+    // Of a process of which nothing is left only the loss is known: it is no further rank.
+    if (stream->threads.empty() && !stream->world) {
+      health_.Add(stream->health);
+    } else {
+      streams_.push_back(std::move(stream));
+    }
+  }
+}
+
+Trace Trace::Open(const std::string& path, ReadMeter* meter) {
   namespace fs = std::filesystem;
   std::error_code error;
   if (!fs::is_directory(path, error))
@@ -183,18 +213,17 @@ Trace Trace::Open(const std::string& path) {
   std::ranges::sort(files);
   Trace trace;
   trace.path_ = path;
-  for (const std::string& file : files)
-    if (std::unique_ptr<Stream> stream = ReadStream(file, trace.health_))
-      trace.streams_.push_back(std::move(stream));
+  trace.meter_ = meter;
+  trace.ReadStreams(files);
   if (trace.streams_.empty()) trace.health_.Add(Defect::kEmptyArchive, "");
   for (const auto& stream : trace.streams_) trace.health_.Add(stream->health);
   trace.clocks_ = CorrectClocks(trace.streams_, trace.health_);
-  trace.processes_ = NumberProcesses(trace.streams_, trace.health_);
+  trace.processes_ = NumberProcesses(trace.streams_);
   trace.UnifyDefinitions();
   trace.PlaceLocations();
   std::vector<bool> seen;
   for (const Process& p : trace.processes_) {
-    const int world = p.stream->world ? p.stream->world->world_size : 0;
+    const int world = p.in_world ? FirstRankOf(p) + p.stream->world->world_size : 0;
     trace.rank_count_ = std::max({trace.rank_count_, p.rank + 1, world});
     seen.resize(std::max(seen.size(), static_cast<std::size_t>(trace.rank_count_)));
     seen[static_cast<std::size_t>(p.rank)] = true;
@@ -202,6 +231,28 @@ Trace Trace::Open(const std::string& path) {
   trace.health_.Add(Defect::kMissingRank, "",
                     static_cast<std::uint64_t>(std::ranges::count(seen, false)));
   return trace;
+}
+
+void Trace::ForEachOf(std::span<const Location* const> some, const char* phase,
+                      const std::function<void(const Location&)>& body) const {
+  // The largest first: none is begun when the others are nearly done.
+  std::vector<std::pair<std::uint64_t, const Location*>> order;
+  std::uint64_t bytes = 0;
+  for (const Location* l : some) {
+    order.emplace_back(l->stream->Bytes(), l);
+    bytes += order.back().first;
+  }
+  std::ranges::stable_sort(order, std::greater<>(),
+                           &std::pair<std::uint64_t, const Location*>::first);
+  BeginPhase(phase, bytes);
+  ForEachIndex(order.size(), [&](std::size_t i) { body(*order[i].second); });
+}
+
+void Trace::ForEachLocation(const char* phase,
+                            const std::function<void(const Location&)>& body) const {
+  std::vector<const Location*> all;
+  for (const Location& l : locations_) all.push_back(&l);
+  ForEachOf(all, phase, body);
 }
 
 const Location* Trace::MainOf(int rank) const {
@@ -225,7 +276,11 @@ bool Trace::IsHost(int rank) const {
 
 bool Trace::HasHost() const { return std::ranges::any_of(processes_, &Process::is_host); }
 
-std::string Trace::RankName(int rank) const { return IsHost(rank) ? "host" : std::to_string(rank); }
+std::string Trace::RankName(int rank) const {
+  // Of several programs each may have a host: then their numbers tell them apart.
+  const bool only = std::ranges::count_if(processes_, &Process::is_host) == 1;
+  return only && IsHost(rank) ? "host" : std::to_string(rank);
+}
 
 std::string Trace::Program() const {
   for (const Location& l : locations_)
@@ -284,9 +339,11 @@ const Event* EventCursor::Next() {
     batch_.clear();
     next_ = 0;
     Collector collector{batch_, process_->regions};
+    const std::size_t chunk = at_.chunk;
     if (!ScanSome(*location_->stream, process_->RegionCount(), kBatchWords, at_, counts_,
                   collector))
       return nullptr;
+    if (at_.chunk != chunk) trace_->TellRead(location_->stream->chunks[chunk].Bytes());
   }
   return &batch_[next_++];
 }

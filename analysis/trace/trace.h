@@ -5,14 +5,17 @@
 #define STIPPLE_ANALYSIS_TRACE_TRACE_H
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "analysis/trace/clock.h"
 #include "analysis/trace/health.h"
+#include "analysis/trace/read_meter.h"
 #include "analysis/trace/scan.h"
 #include "analysis/trace/stream.h"
 #include "stipple/format.h"
@@ -81,8 +84,9 @@ struct Location {
 
 class Trace {
  public:
-  /// Throws InputError when `path` is no directory. Damage is no error: see Health.
-  static Trace Open(const std::string& path);
+  /// Throws InputError when `path` is no directory. Damage is no error: see Health. The meter, if
+  /// any, is told of all reading and must live longer than the trace.
+  static Trace Open(const std::string& path, ReadMeter* meter = nullptr);
 
   const std::string& path() const { return path_; }
   const std::vector<Region>& regions() const { return regions_; }
@@ -114,10 +118,24 @@ class Trace {
   double NsPerTick(const Location& l) const { return Map(l).MeanSlope(); }
   std::int64_t SpanNs() const { return span_ns_; }
 
-  /// Calls the visitor for each event of a location; see ScanSome.
+  /// Calls the visitor for each event of a location; see ScanSome. Different locations may be
+  /// scanned at the same time.
   template <class Visitor>
   void Scan(const Location& l, Visitor& visitor) const {
-    counts_[l.index] = ScanThread(*l.stream, ProcessOf(l).RegionCount(), visitor);
+    counts_[l.index] = ScanThread(*l.stream, ProcessOf(l).RegionCount(), visitor,
+                                  [this](std::uint64_t bytes) { TellRead(bytes); });
+  }
+  /// Calls `body` for each location of `some` on several cores, so that each may be scanned once;
+  /// the meter counts it as one phase.
+  void ForEachOf(std::span<const Location* const> some, const char* phase,
+                 const std::function<void(const Location&)>& body) const;
+  void ForEachLocation(const char* phase, const std::function<void(const Location&)>& body) const;
+  /// For reading by EventCursor.
+  void BeginPhase(const char* phase, std::uint64_t bytes) const {
+    if (meter_ != nullptr) meter_->Begin(phase, bytes);
+  }
+  void TellRead(std::uint64_t bytes) const {
+    if (meter_ != nullptr) meter_->Add(bytes);
   }
   /// Of the last Scan; scans if there was none.
   const ScanCounts& CountsOf(const Location& l) const;
@@ -130,6 +148,7 @@ class Trace {
 
  private:
   const ClockMap& Map(const Location& l) const { return clocks_.maps[l.process_index]; }
+  void ReadStreams(const std::vector<std::string>& files);
   void UnifyDefinitions();
   void PlaceLocations();
 
@@ -146,6 +165,7 @@ class Trace {
   int rank_count_ = 0;
   TraceHealth health_;
   mutable std::vector<std::optional<ScanCounts>> counts_;
+  ReadMeter* meter_ = nullptr;
 };
 
 /// One event, decoded.
@@ -160,12 +180,13 @@ struct Event {
 class EventCursor {
  public:
   EventCursor(const Trace& trace, const Location& location)
-      : location_(&location), process_(&trace.ProcessOf(location)) {}
+      : trace_(&trace), location_(&location), process_(&trace.ProcessOf(location)) {}
   /// Null: no more.
   const Event* Next();
   const Location& location() const { return *location_; }
 
  private:
+  const Trace* trace_;
   const Location* location_;
   const Process* process_;
   ScanPosition at_;

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 
+#include "analysis/report/progress_text.h"
 #include "analysis/report/text.h"
 #include "analysis/stats/finding_of.h"
 #include "analysis/stats/message_matrix.h"
@@ -11,6 +12,7 @@
 #include "analysis/stats/states.h"
 #include "analysis/stats/tables.h"
 #include "analysis/stats/timeline_of.h"
+#include "analysis/trace/ranks.h"
 #include "tests/analysis/archive_writer.h"
 
 namespace stipple {
@@ -79,6 +81,13 @@ struct Written {
   Trace trace;
 };
 
+/// Of the first location, by region.
+std::vector<RegionTime> Profile(const Trace& trace, const Selection& selection) {
+  std::vector<RegionTime> times(trace.regions().size());
+  for (const RegionTime& t : ProfileOf(trace, trace.locations()[0], selection)) times[t.region] = t;
+  return times;
+}
+
 double Number(const Cell& cell) {
   return std::holds_alternative<double>(cell) ? std::get<double>(cell)
                                               : static_cast<double>(std::get<std::int64_t>(cell));
@@ -102,7 +111,7 @@ TEST(Profile, ExclusiveTimesSumToTheSpanAndRecursionCountsOnce) {
   TemporaryArchive archive;
   archive.Add(s);
   const Trace trace = Trace::Open(archive.path());
-  const std::vector<RegionTime> times = ProfileOf(trace, trace.locations()[0], {});
+  const std::vector<RegionTime> times = Profile(trace, {});
   double exclusive = 0;
   for (const RegionTime& t : times) exclusive += t.exclusive_ns;
   EXPECT_DOUBLE_EQ(exclusive, 1000);
@@ -131,13 +140,12 @@ TEST(Profile, PartsOfTheTimeSumToTheWhole) {
   double parts = 0;
   std::uint64_t calls = 0;
   for (std::int64_t begin = 0; begin < 8000; begin += 1000) {
-    const auto times =
-        ProfileOf(trace, trace.locations()[0], {begin, begin + 1000 - 1, std::nullopt});
+    const auto times = Profile(trace, {begin, begin + 1000 - 1, std::nullopt});
     calls += times[2].calls;
-    const auto exact = ProfileOf(trace, trace.locations()[0], {begin, begin + 1000, std::nullopt});
+    const auto exact = Profile(trace, {begin, begin + 1000, std::nullopt});
     parts += exact[2].exclusive_ns;
   }
-  const auto whole = ProfileOf(trace, trace.locations()[0], {});
+  const auto whole = Profile(trace, {});
   EXPECT_NEAR(parts, whole[2].exclusive_ns, 1e-6);
   EXPECT_EQ(calls, whole[2].calls);
 }
@@ -159,7 +167,7 @@ TEST(Messages, MatchInTheOrderOfPostsNotOfCompletions) {
   });
   receiver.End(5000);
   const Written w({sender, receiver});
-  const MpiActivity mpi = ReadMpiActivity(w.trace);
+  const MpiActivity mpi = Analysis(w.trace).mpi;
   EXPECT_EQ(mpi.matched, 3U);
   EXPECT_EQ(mpi.Unmatched(), 0U);
   for (const ReceiveEvent& r : mpi.receives) EXPECT_EQ(mpi.sends[r.send].bytes, r.bytes);
@@ -176,7 +184,7 @@ TEST(Messages, CancelledSendsAreGoneAndLostReceivesAreCounted) {
   receiver.Receive(0, 5, 1300, 1400);
   receiver.End(5000);
   const Written w({sender, receiver});
-  const MpiActivity mpi = ReadMpiActivity(w.trace);
+  const MpiActivity mpi = Analysis(w.trace).mpi;
   EXPECT_EQ(mpi.matched, 1U);
   EXPECT_EQ(mpi.sends.size(), 2U);
   EXPECT_EQ(mpi.health.CountOf(Defect::kUnmatchedSend), 1U);
@@ -217,7 +225,7 @@ TEST(States, SumToTheSpanAndIdleEndsWhenThePartnerArrives) {
 
 TEST(Waits, NameTheCulpritAndWhereItWas) {
   const Written w(LateSender());
-  const Table table = TableEntries()[4].make(w.trace, {}, false).table;
+  const Table table = TableEntries()[4].make(Analysis(w.trace), {}, false).table;
   ASSERT_EQ(table.rows.size(), 2U);
   EXPECT_EQ(std::get<std::string>(table.rows[0][0]), "late-sender");
   EXPECT_EQ(Number(table.rows[0][1]), 1);
@@ -333,13 +341,71 @@ TEST(Timeline, ColumnsHoldTheStatesExactly) {
   }
 }
 
+// Two runs of an MPI program of two ranks, one after the other, in one archive.
+TEST(Jobs, AreKeptApartAndMatchedEach) {
+  std::vector<Rank> ranks{Rank(0, 2), Rank(1, 2), Rank(0, 2), Rank(1, 2)};
+  for (std::size_t i = 0; i < 4; ++i) {
+    ranks[i].stream.header.pid = static_cast<std::uint32_t>(i + 1);
+    ranks[i].stream.header.parent_pid = i < 2 ? 100 : 200;
+    ranks[i].stream.header.start_realtime_ns = 1'000'000'000 + i * 1000;
+  }
+  ranks[0].Send(1, 1, 1100, 1110);
+  ranks[1].Receive(0, 1, 1100, 1120);
+  ranks[2].Send(1, 1, 5000, 5010, 100);
+  ranks[3].Receive(0, 1, 2000, 5020);
+  ranks[0].Call(kWork, 1200, 1300);
+  for (Rank& r : ranks) r.End(6000);
+  const Written w(ranks);
+  const Analysis analysis(w.trace);
+  EXPECT_TRUE(analysis.health.Sound());
+  EXPECT_EQ(w.trace.RankCount(), 4);
+  EXPECT_EQ(JobsOf(w.trace.processes()).size(), 2U);
+  EXPECT_EQ(TableJson(VolumeTable(analysis, {})),
+            "{\"rows\":[\"0\",\"1\",\"2\",\"3\"],\"columns\":[\"0\",\"1\",\"2\",\"3\"],"
+            "\"values\":[[0,8,0,0],[0,0,0,0],[0,0,0,100],[0,0,0,0]]}\n");
+  const Finding f = FindingOf(w.trace);
+  EXPECT_EQ(f.culprit, 2);
+  EXPECT_EQ(f.cause, "late-sender");
+}
+
+TEST(Imbalance, IsOneObjectWithTheCauseOrNone) {
+  const Written late(LateSender());
+  const TableEntry& entry = *std::ranges::find(TableEntries(), "imbalance", &TableEntry::name);
+  const Table table = entry.make(Analysis(late.trace), {}, false).table;
+  EXPECT_EQ(std::get<std::string>(table.rows[0][2]), "late-sender");
+  EXPECT_EQ(TableJson(table).substr(0, 17), "{\"max_over_mean\":");
+  std::vector<Rank> ranks{Rank(0, 2), Rank(1, 2)};
+  for (Rank& r : ranks) r.End(4000);
+  const Written even(ranks);
+  const Table healthy = entry.make(Analysis(even.trace), {}, false).table;
+  EXPECT_EQ(std::get<std::string>(healthy.rows[0][2]), "none");
+  EXPECT_EQ(Number(healthy.rows[0][1]), 0);
+}
+
+TEST(Progress, SaysNothingForHalfASecondThenHowLongItWillTake) {
+  ReadMeter meter;
+  ProgressText progress(100);
+  EXPECT_EQ(progress.At(meter.Now(), 101), "");
+  meter.Begin("reading", 12'000'000'000);
+  ProgressText quick(100);
+  EXPECT_EQ(quick.At(meter.Now(), 100.0), "");
+  meter.Add(3'000'000'000);
+  EXPECT_EQ(quick.At(meter.Now(), 100.4), "");
+  EXPECT_EQ(quick.At(meter.Now(), 101), "reading 3.0 of 12.0 GB, 3 s left");
+  meter.Add(3'000'000'000);
+  EXPECT_EQ(quick.At(meter.Now(), 202), "reading 6.0 of 12.0 GB, 102 s left");
+  EXPECT_EQ(quick.At(meter.Now(), 500), "reading 6.0 of 12.0 GB, 7 min left");
+  meter.Begin("drawing", 0);
+  EXPECT_EQ(quick.At(meter.Now(), 600), "drawing");
+}
+
 TEST(Tables, EachNameOccursOnceAndWorksOnAnEmptyArchive) {
   TemporaryArchive archive;
   const Trace trace = Trace::Open(archive.path());
   std::map<std::string_view, int> names;
   for (const TableEntry& entry : TableEntries()) {
     EXPECT_EQ(++names[entry.name], 1);
-    const Table table = entry.make(trace, {}, false).table;
+    const Table table = entry.make(Analysis(trace), {}, false).table;
     EXPECT_EQ(table.name, entry.name);
     EXPECT_TRUE(table.rows.empty()) << entry.name;
   }

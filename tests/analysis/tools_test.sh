@@ -33,7 +33,7 @@ expect 2 "no compiler" "$stipple" flags nonsense
 mkdir empty.stipple
 expect 0 "info of nothing" "$stipple" info --json empty.stipple; has out '"events":0'
 expect 1 "check of nothing" "$stipple" check empty.stipple; has out "no stream"
-expect 2 "unknown table" "$stipple" stats empty.stipple --table nonsense; has err "profile states messages volume waits"
+expect 2 "unknown table" "$stipple" stats empty.stipple --table nonsense; has err "profile states messages volume waits imbalance"
 expect 2 "unknown format" "$stipple" stats empty.stipple --table states --format nonsense; has err "text csv json"
 
 # Nothing recorded: said, with the reason, and the status is the command's.

@@ -5,7 +5,7 @@
 
 #include <cstddef>
 
-#include "analysis/stats/health_check.h"
+#include "analysis/stats/analysis.h"
 #include "analysis/trace/demangle.h"
 #include "analysis/trace/input_error.h"
 #include "tests/analysis/archive_writer.h"
@@ -174,7 +174,7 @@ TEST(Trace, RecordWhoseLastWordsAreZeroIsRead) {
   archive.Add(s);
   const Trace trace = Trace::Open(archive.path());
   EXPECT_EQ(trace.EventCount(), 2U);
-  EXPECT_TRUE(CheckArchive(trace).Sound());
+  EXPECT_TRUE(Analysis(trace).health.Sound());
 }
 
 TEST(Trace, ProcessesShareRegionsAndAreOrderedByRank) {
@@ -220,7 +220,7 @@ TEST(Trace, ForkedChildRepeatsItsParentsRankAndMayLeaveItsParentsFrames) {
   EXPECT_EQ(trace.locations()[1].rank, 0);
   EXPECT_EQ(trace.locations()[1].process, 1);
   EXPECT_EQ(trace.RankCount(), 1);
-  EXPECT_TRUE(CheckArchive(trace).Sound());
+  EXPECT_TRUE(Analysis(trace).health.Sound());
 }
 
 TEST(Trace, CountsWhatIsWrong) {
@@ -236,7 +236,8 @@ TEST(Trace, CountsWhatIsWrong) {
   s.Leave(1, 2400);
   TemporaryArchive archive;
   archive.Add(s);
-  const TraceHealth health = CheckArchive(Trace::Open(archive.path()));
+  const Trace trace = Trace::Open(archive.path());
+  const TraceHealth health = Analysis(trace).health;
   EXPECT_EQ(health.CountOf(Defect::kLeaveWithoutEnter), 1U);
   EXPECT_EQ(health.CountOf(Defect::kUncommitted), 1U);
   EXPECT_EQ(health.CountOf(Defect::kUndefinedRegion), 2U);
@@ -249,7 +250,7 @@ TEST(Trace, EmptyAndMissingArchives) {
   TemporaryArchive archive;
   const Trace trace = Trace::Open(archive.path());
   EXPECT_EQ(trace.EventCount(), 0U);
-  EXPECT_EQ(CheckArchive(trace).CountOf(Defect::kEmptyArchive), 1U);
+  EXPECT_EQ(Analysis(trace).health.CountOf(Defect::kEmptyArchive), 1U);
   EXPECT_THROW(Trace::Open(archive.path() + "/none"), InputError);
 }
 
@@ -265,6 +266,33 @@ TEST(Trace, DamagedFileHeaderDoesNotHideTheEvents) {
   const Trace trace = Trace::Open(archive.path());
   EXPECT_EQ(trace.EventCount(), 2U);
   EXPECT_EQ(trace.Health().CountOf(Defect::kBadFileHeader), 1U);
+}
+
+// A process that ends cuts off what it had allocated ahead.
+TEST(Trace, StreamThatIsCutWhileItIsReadLosesItsEndOnly) {
+  StreamWriter s = Program();
+  for (std::uint64_t chunk = 0; chunk < 8; ++chunk) {
+    s.NewChunk(1000 + chunk * 1000);
+    s.Enter(1, 1100 + chunk * 1000);
+    s.Leave(1, 1200 + chunk * 1000);
+  }
+  TemporaryArchive archive;
+  archive.Add(s);
+  const Trace trace = Trace::Open(archive.path());
+  for (const auto& file : std::filesystem::directory_iterator(archive.path()))
+    std::filesystem::resize_file(file, 5 * kGranuleBytes);
+  EXPECT_EQ(trace.EventCount(), 6U);  // header, definitions, three chunks are left
+}
+
+TEST(Trace, WhatCannotBeCountedIsNotCalledNothing) {
+  StreamWriter s = Program();
+  s.NewChunk(1000);
+  s.Enter(1, 2000);
+  TemporaryArchive archive;
+  archive.Add(s);
+  EXPECT_FALSE(Trace::Open(archive.path()).Health().LostUncounted());
+  archive.AddBytes("2", "");
+  EXPECT_TRUE(Trace::Open(archive.path()).Health().LostUncounted());
 }
 
 TEST(Trace, MissingRankIsReported) {

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+// Sees the events of one location and keeps time and calls per region; what MPI did is collected in
+// the same scan.
+#ifndef STIPPLE_ANALYSIS_STATS_PROFILE_VISITOR_H
+#define STIPPLE_ANALYSIS_STATS_PROFILE_VISITOR_H
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "analysis/trace/mpi_collector.h"
+#include "analysis/trace/scan.h"
+
+namespace stipple {
+
+/// All that an event touches of a region.
+struct RegionTicks {
+  std::uint64_t calls = 0;
+  std::uint64_t inclusive = 0;
+  std::uint64_t exclusive = 0;
+  std::uint32_t open = 0;        // how often it is on the stack
+  std::uint32_t is_watched = 0;  // its events go to the collector, too
+};
+
+struct Frame {
+  RegionTicks* region;
+  std::uint64_t enter;  // of the visit
+};
+
+/// Charges the time between two events to the region on top of the stack. Ticks are clamped into
+/// the selected span, so time outside it is nobody's. Below the outermost frame lies one of a
+/// region that is none, so that the stack is never empty.
+class ProfileVisitor {
+ public:
+  /// What each event touches: a local object of the scan, so that it stays in registers.
+  struct Hot {
+    ProfileVisitor* owner;
+    RegionTicks* regions;
+    Frame* top;
+    Frame* limit;
+    std::uint64_t begin;
+    std::uint64_t end;
+    std::uint64_t last;
+
+    void Function(std::uint32_t region, bool leave, std::uint64_t ticks) {
+      const std::uint64_t now = ticks < begin ? begin : ticks > end ? end : ticks;
+      RegionTicks* const r = regions + region;
+      top->region->exclusive += now - last;
+      last = now;
+      if (r->is_watched != 0) [[unlikely]]
+        owner->collector_->Function(region, leave, ticks);
+      // Enter or leave is a branch on purpose: without it each event would wait for the stack's
+      // previous store (measured: 13 ns instead of 8 where the two alternate at random).
+      if (!leave) {
+        r->calls += static_cast<std::uint64_t>(now == ticks);
+        ++r->open;
+        if (top == limit) [[unlikely]] {
+          top = owner->Grow();
+          limit = owner->Limit();
+        }
+        *++top = {r, now};
+      } else if (top->region == r) [[likely]] {
+        Pop(now);
+      } else if (r->open != 0) {  // frames above it were left without an event
+        while (top->region != r) Pop(now);
+        Pop(now);
+      } else {
+        ++owner->leaves_without_enter_;
+      }
+    }
+    void Record(const EventWord* record, std::uint64_t ticks) {
+      if (owner->collector_ != nullptr) owner->collector_->Record(record, ticks);
+    }
+
+    void Pop(std::uint64_t now) {
+      RegionTicks* const r = top->region;
+      // Whether it is the outermost visit depends on the recursion: no branch, it would be guessed.
+      const std::uint64_t outermost = static_cast<std::uint64_t>(--r->open == 0);
+      r->inclusive += (now - top->enter) & (0 - outermost);
+      --top;
+    }
+  };
+
+  /// Events of MPI functions and records go to `collector`, if there is one, at the same time.
+  ProfileVisitor(std::uint32_t region_count, std::uint64_t begin, std::uint64_t end,
+                 MpiCollector* collector)
+      : regions_(region_count + 1), stack_(1024), collector_(collector) {
+    for (std::uint32_t r = 0; collector != nullptr && r < region_count; ++r)
+      regions_[r].is_watched = collector->Wants(r) ? 1 : 0;
+    stack_.front() = {&regions_.back(), 0};
+    hot_ = {this, regions_.data(), stack_.data(), Limit(), begin, end, begin};
+  }
+  ProfileVisitor(const ProfileVisitor&) = delete;
+  ProfileVisitor& operator=(const ProfileVisitor&) = delete;
+
+  Hot Begin() const { return hot_; }
+  void End(const Hot& hot) { hot_ = hot; }
+
+  /// Ends the frames that are still open.
+  void Finish(std::uint64_t ticks) {
+    const std::uint64_t now = std::max(hot_.last, std::clamp(ticks, hot_.begin, hot_.end));
+    hot_.top->region->exclusive += now - hot_.last;
+    while (hot_.top != stack_.data()) hot_.Pop(now);
+  }
+  /// By region of the process.
+  std::span<const RegionTicks> regions() const { return {regions_.data(), regions_.size() - 1}; }
+  std::uint64_t leaves_without_enter() const { return leaves_without_enter_; }
+
+ private:
+  Frame* Limit() { return stack_.data() + stack_.size() - 1; }
+  /// Doubles a full stack; returns its top.
+  Frame* Grow() {
+    const std::size_t used = stack_.size();
+    stack_.resize(2 * used);
+    return stack_.data() + used - 1;
+  }
+
+  std::vector<RegionTicks> regions_;
+  std::vector<Frame> stack_;
+  MpiCollector* collector_;
+  std::uint64_t leaves_without_enter_ = 0;
+  Hot hot_{};
+};
+
+}  // namespace stipple
+
+#endif
