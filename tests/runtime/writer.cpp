@@ -3,6 +3,7 @@
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <pthread.h>
+#include <sched.h>
 #include <signal.h>
 #include <sys/mman.h>
 #include <sys/syscall.h>
@@ -137,21 +138,32 @@ int Modes(long rounds) {
   return 0;
 }
 
-/// Switches ids on and off while other threads run through them.
+/// Switches ids on and off while other threads run through them. On a loaded machine the switcher may
+/// not be scheduled while `rounds` pass, or sleep with all switched off: hence the visits before and
+/// after, and rounds until it has switched often enough.
 int Toggle(long rounds) {
+  const std::uint32_t ids[] = {object->descriptors[0].id, object->descriptors[1].id};
+  Visit(0);
   std::atomic<bool> done{false};
-  std::thread toggler([&done] {
-    const std::uint32_t ids[] = {object->descriptors[0].id, object->descriptors[1].id};
+  std::atomic<long> switches{0};
+  std::thread toggler([&] {
     const std::uint32_t modes[] = {0, ~0u, STIPPLE_NO_CLOCK, STIPPLE_COUNT_ONLY};
     for (unsigned i = 0; !done; ++i) {
       const std::uint32_t mode = modes[i / 2 % 4];
       const std::uint32_t id = mode == 0 ? 0 : ids[i % 2] | (mode == ~0u ? 0 : mode);
       std::atomic_ref<std::uint32_t>(object->descriptors[i % 2].id) = id;
+      ++switches;
     }
   });
   Work(rounds);
+  while (switches < 1000) {
+    Work(100);
+    sched_yield();
+  }
   done = true;
   toggler.join();
+  object->descriptors[0].id = ids[0];
+  Visit(0);
   return 0;
 }
 
