@@ -27,8 +27,7 @@ Analysis::Analysis(const Trace& of) : trace(of), profiles(of.locations().size())
   waits = FindWaits(trace, mpi);
   health = trace.Health();
   for (const Location& l : trace.locations())
-    health.Add(Defect::kLeaveWithoutEnter, trace.ProcessOf(l).stream->file_name,
-               leaves_without_enter[l.index]);
+    health.Add(Defect::kLeaveWithoutEnter, trace.ProcessOf(l).where, leaves_without_enter[l.index]);
   health.Add(mpi.health);
 }
 

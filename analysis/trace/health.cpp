@@ -89,6 +89,10 @@ void TraceHealth::Add(const TraceHealth& other) {
   for (const Problem& p : other.problems_) Add(p.defect, p.where, p.count);
 }
 
+void TraceHealth::AddAt(std::string_view where, const TraceHealth& other) {
+  for (const Problem& p : other.problems_) Add(p.defect, where, p.count);
+}
+
 std::uint64_t TraceHealth::CountOf(Defect defect) const {
   std::uint64_t count = 0;
   for (const Problem& p : problems_)
