@@ -29,6 +29,7 @@ enum class Defect {
   kUndefinedName,
   kUndefinedCommunicator,
   kLeaveWithoutEnter,
+  kEnterWithoutLeave,
   kUnclosedProcess,
   kStillRunning,
   kMissingRank,

@@ -51,6 +51,7 @@ struct Process {
   std::uint32_t said_counts;
   std::uint64_t stop_ms;  // after begin
   StreamFile file;
+  FileHeader* header;  // in the file, mapped
   DefinitionChunk definitions;
   Thread* threads;  // all that ever recorded, newest first
   Thread* spare;    // never used
@@ -66,6 +67,9 @@ Process* BeginProcess();
 
 /// Ends recording for good after `error`. The lock is held.
 void StopProcess(Process& process, int error);
+
+/// Says in the stream's header that a reader must know `feature`.
+void NoteFeature(Feature feature);
 
 /// Notes how the process ends; later calls replace what earlier ones said.
 void NoteEnd(Ending how, int status);

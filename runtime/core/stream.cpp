@@ -173,12 +173,18 @@ std::uint64_t AppendEvent(std::uint32_t region, bool leave) {
   return ticks;
 }
 
-/// The last round of key destructors: what other keys' destructors do until then still belongs to
-/// the thread. Events after it still find the stream.
+/// In the first round of key destructors the thread's function has been left, by whatever way. The
+/// last round ends the thread: what other keys' destructors do until then still belongs to it. Events
+/// after it still find the stream.
 void EndThread(void* pointer) {
   auto* thread = static_cast<Thread*>(pointer);
   // Zeroed: a forked child's, which has not recorded.
   if (stipple_stream != &thread->control || thread->tid == 0) return;
+  if (thread->end_rounds == 0) {
+    Unwound left{};
+    left.ticks = ReadTicks();
+    AppendRecord(&left, Unwound::kKind, sizeof left);
+  }
   if (++thread->end_rounds < PTHREAD_DESTRUCTOR_ITERATIONS) {
     pthread_setspecific(end_key, thread);
     return;
