@@ -43,7 +43,7 @@ const std::vector<PartRule> kRules = {
     {"raytracer", {kUser}, {"mpi.h", "png.h", "fmt/", "nlohmann/", "CLI/"}},
     {"raytracer/geometry", {"raytracer", kUser}, {"embree", "hwy/"}},
     {"raytracer/simulate", {"raytracer", kUser}, {"simgrid/", "smpi/", "mpi.h"}},
-    {"analysis/trace", {kFormat}, {"fmt/", "zstd.h"}},
+    {"analysis/trace", {kFormat}, {"fmt/", "zstd.h", "elfutils/"}},
     {"analysis/stats", {kFormat, "analysis/trace"}, {"fmt/"}},
     {"analysis/views", {"analysis/stats", "analysis/trace"}, {"fmt/", "vtk"}},
     {"analysis/report",
@@ -118,7 +118,7 @@ bool Allowed(const PartRule& rule, const std::string& target) {
 bool IsLibrary(const std::string& name) {
   static const std::regex kPattern(
       "(mpi\\.h|png\\.h|fmt/.*|nlohmann/.*|CLI/.*|vtk.*|llvm/.*|embree.*|hwy/.*|simgrid/.*|smpi/.*|"
-      "otf2/.*|zstd\\.h|libunwind.*|gcc-plugin\\.h)");
+      "otf2/.*|zstd\\.h|elfutils/.*|libunwind.*|gcc-plugin\\.h)");
   return std::regex_match(name, kPattern);
 }
 
