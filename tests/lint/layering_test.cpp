@@ -28,15 +28,16 @@ struct PartRule {
 const std::string kAbi = "runtime/include/stipple/abi.h";
 const std::string kFormat = "runtime/include/stipple/format.h";
 const std::string kUser = "runtime/include/stipple/user.h";
+const std::string kFilter = "runtime/include/stipple/filter.h";
 
 // The longest folder that holds a file rules it.
 const std::vector<PartRule> kRules = {
     {"runtime/include", {}, {}},
-    {"plugin/select", {}, {}},
+    {"plugin/select", {kFilter}, {}},
     {"plugin", {kAbi}, {}},
     {"plugin/gcc", {kAbi, "plugin/select", "plugin"}, {"gcc-plugin.h", "*gcc"}},
     {"plugin/llvm", {kAbi, "plugin/select", "plugin"}, {"llvm/"}},
-    {"runtime/core", {kAbi, kFormat, kUser}, {}},
+    {"runtime/core", {kAbi, kFormat, kUser, kFilter}, {}},
     {"runtime/system", {kAbi, kFormat, "runtime/core"}, {}},
     {"runtime/unwind", {kFormat}, {"libunwind"}},
     {"runtime/mpi", {kFormat, "runtime/core"}, {"mpi.h"}},
@@ -57,7 +58,7 @@ const std::vector<PartRule> kRules = {
      {"fmt/", "nlohmann/"}},
     {"analysis/tools",
      {"analysis/exemplar", "analysis/exchange", "analysis/report", "analysis/stats",
-      "analysis/trace", kFormat},
+      "analysis/trace", kFormat, kFilter},
      {"fmt/", "nlohmann/", "CLI/"}},
 };
 
