@@ -27,6 +27,7 @@ enum class Defect {
   kBadDefinition,
   kUndefinedRegion,
   kUndefinedName,
+  kUnnamedFunction,
   kUndefinedCommunicator,
   kLeaveWithoutEnter,
   kEnterWithoutLeave,
