@@ -170,7 +170,7 @@ TEST(Stream, ManualEventsDefineTheirNamesAtFirstUse) {
 TEST(Region, KeepsItsIdThroughUnloading) {
   const Directory archive;
   EXPECT_EQ(RunWriter(archive.path(), "reload 1000").status, 0);
-  EXPECT_EQ(OnlyStream(archive).regions.size(), 3u);
+  EXPECT_EQ(OnlyStream(archive).definitions.at(stipple::RecordKind::kDefineRegion), 3);
 }
 
 }  // namespace
