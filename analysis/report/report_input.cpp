@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/report/left_out.h"
 #include "analysis/report/text.h"
 #include "analysis/stats/finding_of.h"
 #include "analysis/stats/message_matrix.h"
@@ -68,6 +69,7 @@ ReportInput ReportInputOf(const Analysis& analysis, std::size_t columns) {
   input.volume = VolumeTable(analysis, all);
   input.profile = ProfileTable(analysis, all, false);
   input.waits = WaitsTable(trace, blames);
+  for (std::string& text : LeftOutTexts(trace)) input.health.push_back(std::move(text));
   for (const Problem& p : analysis.health.problems()) input.health.push_back(TextOf(p));
   return input;
 }

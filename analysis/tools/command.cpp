@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "analysis/report/left_out.h"
 #include "analysis/trace/input_error.h"
 #include "analysis/trace/ranks.h"
 
@@ -72,6 +73,7 @@ void WarnOfProblems(const Trace& trace, const TraceHealth& health) {
   for (std::size_t i = 0; jobs.size() > 1 && i < jobs.size(); ++i)
     fmt::print(stderr, "stipple: MPI job {} of {}: {}, ranks {} to {}\n", i + 1, jobs.size(),
                jobs[i].program, jobs[i].first_rank, jobs[i].first_rank + jobs[i].rank_count - 1);
+  for (const std::string& text : LeftOutTexts(trace)) fmt::print(stderr, "stipple: {}\n", text);
   constexpr std::size_t kMost = 5;
   const std::vector<Problem>& problems = health.problems();
   for (std::size_t i = 0; i < std::min(kMost, problems.size()); ++i)

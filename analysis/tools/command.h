@@ -52,7 +52,7 @@ struct SelectionOptions {
   Selection For(const Trace& trace) const;
 };
 
-/// Loss is shown on every output: one line a problem on standard error.
+/// Loss, and what was left out, are shown on every output: one line each on standard error.
 void WarnOfProblems(const Trace& trace, const TraceHealth& health);
 
 /// Writes all of `text` to standard output; a closed pipe ends the program quietly.

@@ -52,8 +52,10 @@ fs::path PluginOf(const std::string& compiler) {
   if (fs::exists(plugin)) return plugin;
   std::string known;
   for (const std::string& name : KnownFolders()) known.append(" ").append(name);
-  throw InputError("stipple flags", fmt::format("no plugin for {} ({}); there are plugins for:{}",
-                                                compiler, folder, known.empty() ? " none" : known));
+  throw InputError("stipple flags",
+                   fmt::format("no plugin for {} ({}); there are plugins for:{}; with "
+                               "-finstrument-functions every compiler does",
+                               compiler, folder, known.empty() ? " none" : known));
 }
 
 std::string FlagsOf(const fs::path& plugin, bool link, bool is_static) {
@@ -70,8 +72,10 @@ std::string FlagsOf(const fs::path& plugin, bool link, bool is_static) {
         plugin.string());
   }
   if (is_static)
-    flags += fmt::format("{}-Wl,-u,stipple_register,-u,stipple_record_mark -L{} -lstipple",
-                         flags.empty() ? "" : " ", LibraryDirectory());
+    flags += fmt::format(
+        "{}-Wl,-u,stipple_register,-u,stipple_record_mark,-u,__cyg_profile_func_enter -L{} "
+        "-lstipple",
+        flags.empty() ? "" : " ", LibraryDirectory());
   return flags;
 }
 

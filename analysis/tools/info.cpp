@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "analysis/report/left_out.h"
 #include "analysis/report/text.h"
 #include "analysis/stats/analysis.h"
 #include "analysis/stats/number.h"
@@ -42,6 +43,13 @@ Json RecordedJson(const Trace& trace) {
   return recorded;
 }
 
+/// Null: there was no filter.
+Json FilterJson(const Trace& trace) {
+  const FilterTotals filter = FilterOf(trace);
+  if (filter.path.empty()) return nullptr;
+  return {{"file", filter.path}, {"functions", filter.functions}, {"filtered", filter.filtered}};
+}
+
 /// Null: more than can be counted.
 Json LostJson(const TraceHealth& health) {
   return health.LostUncounted() ? Json(nullptr) : Json(health.LostEvents());
@@ -75,6 +83,9 @@ std::string InfoJson(const Analysis& info) {
                      {"messages", info.mpi.matched},
                      {"unmatched_messages", info.mpi.Unmatched()},
                      {"span_s", Seconds(trace.SpanNs())},
+                     {"paused_s", LongestPaused(trace).seconds},
+                     {"paused_times", LongestPaused(trace).times},
+                     {"filter", FilterJson(trace)},
                      {"clock", ClockJson(info)},
                      {"recorded", RecordedJson(trace)},
                      {"jobs", JobsJson(trace)},
@@ -108,7 +119,15 @@ std::string InfoText(const Analysis& info) {
                       FormatCount(static_cast<std::int64_t>(info.mpi.matched)),
                       FormatBytes(static_cast<double>(info.mpi.bytes)),
                       FormatCount(static_cast<std::int64_t>(info.mpi.Unmatched())));
-  text += fmt::format("clock      {}\n\n", ClockText(info));
+  text += fmt::format("clock      {}\n", ClockText(info));
+  if (const Paused paused = LongestPaused(trace); paused.times != 0)
+    text += fmt::format("paused     {}, {}\n", FormatSeconds(paused.seconds),
+                        FormatCount(paused.times, "time"));
+  if (const FilterTotals filter = FilterOf(trace); !filter.path.empty())
+    text += fmt::format("filter     {}: {} of {} left out\n", filter.path,
+                        FormatCount(static_cast<std::int64_t>(filter.filtered)),
+                        FormatCount(filter.functions, "function"));
+  text += '\n';
   Table table{"locations",
               TableShape::kRows,
               {{"rank"}, {"process"}, {"thread"}, {"events"}, {"begin_s"}, {"end_s"}},

@@ -66,7 +66,7 @@ std::optional<std::string> OutputOf(const std::vector<std::string>& command) {
   return output;
 }
 
-int RunToEnd(const std::vector<std::string>& command) {
+int RunToEnd(const std::vector<std::string>& command, int ignored) {
   const std::vector<char*> argv = Argv(command);
   sigset_t passed_on;
   sigset_t before;
@@ -76,6 +76,7 @@ int RunToEnd(const std::vector<std::string>& command) {
   sigprocmask(SIG_BLOCK, &passed_on, &before);
   const pid_t child = fork();
   if (child == 0) {
+    if (ignored != 0) signal(ignored, SIG_IGN);
     sigprocmask(SIG_SETMASK, &before, nullptr);
     execvp(argv[0], argv.data());
     const int error = errno;

@@ -3,17 +3,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
+#include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <optional>
 
+#include "analysis/report/left_out.h"
 #include "analysis/report/text.h"
 #include "analysis/stats/number.h"
 #include "analysis/tools/command.h"
 #include "analysis/tools/launcher.h"
 #include "analysis/tools/process.h"
 #include "analysis/trace/input_error.h"
+#include "stipple/filter.h"
 
 namespace stipple {
 namespace {
@@ -24,6 +31,8 @@ struct RunOptions {
   std::string archive;
   bool overwrite = false;
   std::string clock = "exact";
+  std::string filter;  // empty: none
+  bool paused = false;
   std::vector<std::string> command;
 };
 
@@ -37,6 +46,11 @@ std::optional<RunOptions> ParseRun(const Arguments& arguments) {
   app.add_option("--clock", options.clock,
                  "exact, or sparse:N: read the clock for one event in N (a power of two)")
       ->type_name("MODE");
+  app.add_option("--filter", options.filter,
+                 "leave out functions: a filter file in Score-P's syntax")
+      ->type_name("FILE");
+  app.add_flag("--paused", options.paused,
+               "begin switched off; stipple_start() or SIGUSR2 switches on");
   const auto dashes = std::ranges::find(arguments, "--");
   if (!Parse(app, {arguments.begin(), dashes})) return std::nullopt;
   if (dashes == arguments.end() || dashes + 1 == arguments.end())
@@ -59,6 +73,20 @@ void CheckClock(const std::string& clock) {
   throw InputError("--clock", fmt::format("'{}' is unknown; known: exact, sparse:N with N a power "
                                           "of two up to {}",
                                           clock, kMostSparse));
+}
+
+/// Refuses a file that is no filter.
+void CheckFilter(const std::string& path) {
+  std::error_code error;
+  if (fs::is_directory(path, error)) throw InputError(path, "is a directory, not a filter file");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(path, fmt::format("cannot be read: {}", std::strerror(errno)));
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  FilterProblem problem{};
+  ReadFilter(text, nullptr, 0, problem);
+  if (problem.line != 0)
+    throw InputError(fmt::format("{}:{}", path, problem.line),
+                     fmt::format("'{}' {}", problem.word, problem.what));
 }
 
 /// Only streams (and nothing else) make an archive that may be removed.
@@ -115,7 +143,17 @@ std::vector<std::string> Prepare(const RunOptions& options, const std::string& p
   const std::string all = own == nullptr || *own == '\0' ? preload : preload + ":" + own;
   // Asked before the runtime is preloaded: the launcher's version is not to be recorded.
   const char* list = std::getenv("OMPI_MCA_mca_base_env_list");
-  const std::vector<std::string> variables = {"LD_PRELOAD", "STIPPLE_ARCHIVE", "STIPPLE_CLOCK"};
+  std::vector<std::string> variables = {"LD_PRELOAD", "STIPPLE_ARCHIVE", "STIPPLE_CLOCK"};
+  const auto set_or_unset = [&variables](const char* name, const std::string& value) {
+    if (value.empty()) {
+      unsetenv(name);
+    } else {
+      setenv(name, value.c_str(), 1);
+      variables.push_back(name);
+    }
+  };
+  set_or_unset("STIPPLE_FILTER", options.filter.empty() ? "" : fs::absolute(options.filter));
+  set_or_unset("STIPPLE_PAUSED", options.paused ? "1" : "");
   std::vector<std::string> command = options.command;
   if (list == nullptr) command = WithExports(command, variables, preload, IsOpenMpi);
   setenv("LD_PRELOAD", all.c_str(), 1);
@@ -137,7 +175,7 @@ std::uint64_t BytesOnDisk(const fs::path& path) {
   return bytes;
 }
 
-/// Two lines: what was recorded, what to do next.
+/// What was recorded, what was left out, what to do next: a line each.
 void Summarise(const RunOptions& options, int status) {
   const std::string& archive = options.archive;
   const std::string& program = options.command[ProgramIndex(options.command)];
@@ -147,8 +185,8 @@ void Summarise(const RunOptions& options, int status) {
     if (status == 127 || status == 126) return;  // said already that the command did not run
     fmt::print(stderr,
                "stipple: nothing was recorded: no event came from {}\n"
-               "stipple: was it built with the plugin (stipple flags g++), and is it dynamically "
-               "linked?\n",
+               "stipple: was it built with the plugin (stipple flags g++) or with "
+               "-finstrument-functions, and is it dynamically linked?\n",
                program);
     return;
   }
@@ -161,6 +199,7 @@ void Summarise(const RunOptions& options, int status) {
              FormatCount(static_cast<std::uint64_t>(trace.RankCount()), "rank"),
              FormatBytes(static_cast<double>(BytesOnDisk(archive))), LossText(health),
              health.Sound() ? "" : fmt::format(" (problems: stipple check {})", archive));
+  for (const std::string& text : LeftOutTexts(trace)) fmt::print(stderr, "stipple: {}\n", text);
   fmt::print(stderr, "stipple: next: stipple report {} -o {}.html\n", archive,
              fs::path(archive).stem().string());
 }
@@ -171,6 +210,7 @@ int RunRun(const Arguments& arguments) {
   std::optional<RunOptions> options = ParseRun(arguments);
   if (!options) return 0;
   CheckClock(options->clock);
+  if (!options->filter.empty()) CheckFilter(options->filter);
   if (options->archive.empty()) {
     const std::string& program = options->command[ProgramIndex(options->command)];
     options->archive = fs::path(program).filename().string() + ".stipple";
@@ -178,7 +218,8 @@ int RunRun(const Arguments& arguments) {
   while (options->archive.size() > 1 && options->archive.back() == '/') options->archive.pop_back();
   const std::string preload = Preload();
   if (!MakeArchive(options->archive, options->overwrite)) return RunToEnd(options->command);
-  const int status = RunToEnd(Prepare(*options, preload));
+  // A program that does not listen yet, or a shell around it, must not die of the signal.
+  const int status = RunToEnd(Prepare(*options, preload), options->paused ? SIGUSR2 : 0);
   Summarise(*options, status);
   return status;
 }

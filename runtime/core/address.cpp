@@ -69,14 +69,14 @@ void ForEachFunction(Use use) {
 /// Room for one more; false without memory.
 bool MakeRoom() {
   if (table != nullptr && count < table->mask / 2) return true;
-  const std::uint64_t places = table == nullptr ? 4096 : 2 * (table->mask + 1);
+  const std::uint64_t places = table == nullptr ? 256 : 2 * (table->mask + 1);
   auto* grown = static_cast<Table*>(MapMemory(sizeof(Table) + places * sizeof(Function)));
   if (grown == nullptr) return false;
   grown->mask = places - 1;
   ForEachFunction([grown](const Function& f) {
     const std::uintptr_t address = f.address.load(std::memory_order_relaxed);
     Fill(PlaceOf(*grown, address), address, f.token.load(std::memory_order_relaxed),
-          f.region.load(std::memory_order_relaxed));
+         f.region.load(std::memory_order_relaxed));
   });
   Table* old = readable.load(std::memory_order_relaxed);
   table = grown;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Functions known by their addresses: the hooks of -finstrument-functions, which every compiler has.
+// Functions known by their addresses: the hooks of -finstrument-functions, which every compiler
+// has.
 #ifndef STIPPLE_RUNTIME_CORE_ADDRESS_H
 #define STIPPLE_RUNTIME_CORE_ADDRESS_H
 

@@ -230,7 +230,7 @@ Module* Keep(Process& process, Module module, const Mapping& mapping) {
   for (Module* other = newest; other != nullptr && module.number == 0; other = other->next) {
     if (!SameFile(*other, module)) continue;
     module.number = other->number;
-    if (other->mapped) break;  // twice, in two name spaces of the loader
+    if (other->mapped) break;      // twice, in two name spaces of the loader
     const Module before = *other;  // loaded again
     module.path = before.path;
     module.build_id = before.build_id;

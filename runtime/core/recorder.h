@@ -47,6 +47,7 @@ void stipple_record_mark(struct stipple_name* name);
 void stipple_record_counter(struct stipple_name* name, double value);
 void stipple_record_host(void);
 void stipple_switch(int on);
+void stipple_switch_regions(const char* pattern, int on);
 }
 #pragma GCC visibility pop
 

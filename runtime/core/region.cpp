@@ -6,10 +6,13 @@
 
 #include "runtime/core/address.h"
 #include "runtime/core/arena.h"
+#include "runtime/core/filter.h"
 #include "runtime/core/line.h"
 #include "runtime/core/recorder.h"
+#include "runtime/core/settings.h"
 #include "runtime/core/stream.h"
 #include "runtime/core/switch.h"
+#include "stipple/filter.h"
 
 namespace stipple {
 namespace {
@@ -51,9 +54,8 @@ bool SameText(const char* a, const char* b, std::uint32_t bytes) {
 
 bool Same(const Entry& a, const Entry& b) {
   return a.hash == b.hash && a.line == b.line && a.module == b.module && a.offset == b.offset &&
-         a.name_bytes == b.name_bytes &&
-         a.detail_bytes == b.detail_bytes && SameText(a.name, b.name, a.name_bytes) &&
-         SameText(a.detail, b.detail, a.detail_bytes);
+         a.name_bytes == b.name_bytes && a.detail_bytes == b.detail_bytes &&
+         SameText(a.name, b.name, a.name_bytes) && SameText(a.detail, b.detail, a.detail_bytes);
 }
 
 /// Numbers entries from 1 on.
@@ -128,7 +130,10 @@ class Table {
 constinit Table<kMaxRegion> regions;
 constinit Table<65535> names;
 
-/// An object with descriptors, and the region of each (0: never recorded).
+/// In place of a region: the function is filtered.
+constexpr std::uint32_t kFiltered = ~std::uint32_t{0};
+
+/// An object with descriptors, and the region of each (0, kFiltered: never recorded).
 struct Object {
   stipple_dso* dso;
   std::uint32_t* regions;
@@ -146,23 +151,31 @@ std::size_t DescriptorCount(const stipple_dso& object) {
   return static_cast<std::size_t>(object.end - object.begin);
 }
 
-/// Adds an object whose functions have no region yet; null without memory.
-Object* AddObject(stipple_dso* dso) {
+/// Room for the regions of an object's functions; null without memory. Mapped, so that it can be
+/// given back: objects may be loaded and unloaded without end.
+std::uint32_t* MapRegions(const stipple_dso& dso) {
+  return static_cast<std::uint32_t*>(MapMemory(DescriptorCount(dso) * sizeof(std::uint32_t)));
+}
+
+void UnmapRegions(const Object& object) {
+  Syscall(SYS_munmap, Argument(object.regions),
+          static_cast<long>(DescriptorCount(*object.dso) * sizeof(std::uint32_t)));
+}
+
+bool AddObject(const Object& object) {
   if (list.count == list.room) {
     const std::uint32_t room = list.room == 0 ? 64 : 2 * list.room;
     auto* objects = static_cast<Object*>(arena.Take(room * sizeof(Object)));
-    if (objects == nullptr) return nullptr;
+    if (objects == nullptr) return false;
     for (std::uint32_t i = 0; i < list.count; ++i) objects[i] = list.objects[i];
     std::atomic_signal_fence(std::memory_order_seq_cst);
     list.objects = objects;
     list.room = room;
   }
-  // Mapped, so that it can be given back: objects may be loaded and unloaded without end.
-  auto* ids = static_cast<std::uint32_t*>(MapMemory(DescriptorCount(*dso) * sizeof(std::uint32_t)));
-  if (ids == nullptr) return nullptr;
-  list.objects[list.count] = {dso, ids};
+  list.objects[list.count] = object;
   std::atomic_signal_fence(std::memory_order_seq_cst);
-  return &list.objects[list.count++];
+  ++list.count;
+  return true;
 }
 
 void RemoveObject(std::uint32_t index) {
@@ -170,8 +183,7 @@ void RemoveObject(std::uint32_t index) {
   list.objects[index] = list.objects[list.count - 1];
   std::atomic_signal_fence(std::memory_order_seq_cst);
   --list.count;
-  Syscall(SYS_munmap, Argument(gone.regions),
-          static_cast<long>(DescriptorCount(*gone.dso) * sizeof(std::uint32_t)));
+  UnmapRegions(gone);
 }
 
 void SetSlot(stipple_descriptor& descriptor, std::uint32_t token) {
@@ -251,14 +263,37 @@ const char* TextAt(const std::int64_t& field) {
   return field == 0 ? nullptr : reinterpret_cast<const char*>(&field) + field;
 }
 
-/// Gives every function of a new object its region.
+/// Marks the functions that the filter excludes. The lock is not held.
+void FilterObject(const Object& object) {
+  if (!HasFilter()) return;
+  for (std::size_t i = 0; i < DescriptorCount(*object.dso); ++i) {
+    const stipple_descriptor& d = object.dso->begin[i];
+    const char* name = TextAt(d.name);
+    if (name != nullptr && IsFiltered(name, TextAt(d.file))) object.regions[i] = kFiltered;
+  }
+}
+
+/// Says in the archive what the filter did, if there is one.
+void DefineFiltered(Process& process, const Object& object) {
+  const char* path = FilterPath();
+  if (path == nullptr) return;
+  Filtered record{};
+  record.functions = static_cast<std::uint32_t>(DescriptorCount(*object.dso));
+  for (std::uint32_t i = 0; i < record.functions; ++i)
+    record.filtered += object.regions[i] == kFiltered ? 1 : 0;
+  record.path_bytes = static_cast<std::uint32_t>(TextBytes(path));
+  Define(process, &record, Filtered::kKind, sizeof record, path, record.path_bytes);
+}
+
+/// Gives every function of a new object that is not filtered its region.
 void DefineObject(Process& process, const Object& object) {
+  DefineFiltered(process, object);
   for (std::size_t i = 0; i < DescriptorCount(*object.dso); ++i) {
     stipple_descriptor& d = object.dso->begin[i];
     const char* name = TextAt(d.name);
-    if (name == nullptr) continue;
-    const std::uint32_t region = RegionFor(
-        process, MakeEntry(name, TextAt(d.file), d.line, RegionKind::kFunction));
+    if (name == nullptr || object.regions[i] == kFiltered) continue;
+    const std::uint32_t region =
+        RegionFor(process, MakeEntry(name, TextAt(d.file), d.line, RegionKind::kFunction));
     if (process.state.load(std::memory_order_relaxed) == State::kStopped) return;
     object.regions[i] = region;
     SetSlot(d, TokenOf(region));
@@ -281,7 +316,8 @@ void SilenceAll() {
 }
 
 std::uint32_t TokenOf(std::uint32_t region) {
-  return region != 0 && IsSwitchedOn() && !regions[region].off ? region : 0;
+  const bool has_region = region != 0 && region != kFiltered;
+  return has_region && IsSwitchedOn() && !regions[region].off ? region : 0;
 }
 
 void UpdateAll() {
@@ -291,6 +327,19 @@ void UpdateAll() {
       SetSlot(object.dso->begin[d], TokenOf(object.regions[d]));
   }
   UpdateAddresses();
+}
+
+bool IsFunctionNamed(std::uint32_t region, std::string_view pattern) {
+  const Entry& entry = regions[region];
+  if (entry.kind != RegionKind::kFunction) return false;
+  const ReadableName name(entry.name);
+  return MatchesPattern(pattern, name.text());
+}
+
+void SwitchRegion(Process& process, std::uint32_t region, bool on) {
+  if (regions[region].off != on) return;
+  regions[region].off = !on;
+  DefineSwitch(process, on, region);
 }
 
 void DefineRegionSwitches(Process& process) {
@@ -335,15 +384,18 @@ void stipple_register(struct stipple_dso* dso) {
   if (dso == nullptr || dso->abi != STIPPLE_ABI ||
       dso->descriptor_bytes != sizeof(stipple_descriptor) || dso->begin == dso->end)
     return;
+  if (stipple::ReadSettings().archive == nullptr) return;
+  const stipple::Object object = {dso, stipple::MapRegions(*dso)};
+  if (object.regions == nullptr) return;
+  stipple::FilterObject(object);
   const stipple::SignalBlock signals_blocked;
   stipple::Process* process = stipple::BeginProcess();
-  if (process == nullptr) return;
+  if (process == nullptr) return stipple::UnmapRegions(object);
   stipple::Holding holding(process->lock);
-  const stipple::Object* object = stipple::AddObject(dso);
-  if (object == nullptr) return;
+  if (!stipple::AddObject(object)) return stipple::UnmapRegions(object);
   dso->tp_offset = stipple::ControlSlotOffset();
   dso->slow = stipple_slow;
-  stipple::DefineObject(*process, *object);
+  stipple::DefineObject(*process, object);
 }
 
 void stipple_unregister(struct stipple_dso* dso) {

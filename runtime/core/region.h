@@ -5,6 +5,7 @@
 #define STIPPLE_RUNTIME_CORE_REGION_H
 
 #include <cstdint>
+#include <string_view>
 
 #include "runtime/core/module.h"
 #include "runtime/core/process.h"
@@ -25,6 +26,13 @@ void UpdateAll();
 
 /// The region of the function at `address` of `module` (null: of no file). The lock is held.
 std::uint32_t CodeRegion(Process& process, const Module* module, std::uintptr_t address);
+
+/// Whether a region is a function whose name, as people write it, matches a filter's pattern. The
+/// lock is not held.
+bool IsFunctionNamed(std::uint32_t region, std::string_view pattern);
+
+/// Switches one region; UpdateAll makes it so. The lock is held.
+void SwitchRegion(Process& process, std::uint32_t region, bool on);
 
 /// Writes which regions are switched off by themselves. The lock is held.
 void DefineRegionSwitches(Process& process);

@@ -17,6 +17,16 @@ bool StartsWith(const char* text, const char* start) {
   return true;
 }
 
+/// A copy, since the program may change its environment; null if it is not set or empty.
+const char* CopyOfVariable(const char* name) {
+  const char* value = getenv(name);
+  if (value == nullptr || *value == '\0') return nullptr;
+  const std::size_t bytes = TextBytes(value) + 1;
+  char* copy = static_cast<char*>(MapMemory(bytes));
+  if (copy != nullptr) CopyBytes(copy, value, bytes);
+  return copy;
+}
+
 /// The N of "sparse:N", a power of two from 1 to 4096; 0 if it is none.
 std::uint64_t SparseDistance(const char* text) {
   if (!StartsWith(text, "sparse:")) return 0;
@@ -48,14 +58,10 @@ void ReadClockSetting() {
 
 const Settings& ReadSettings() {
   if (was_read) return settings;
-  const char* archive = getenv("STIPPLE_ARCHIVE");
-  if (archive != nullptr && *archive != '\0') {
-    // A copy: the program may change its environment.
-    const std::size_t bytes = TextBytes(archive) + 1;
-    char* copy = static_cast<char*>(MapMemory(bytes));
-    if (copy != nullptr) CopyBytes(copy, archive, bytes);
-    settings.archive = copy;
+  settings.archive = CopyOfVariable("STIPPLE_ARCHIVE");
+  if (settings.archive != nullptr) {
     ReadClockSetting();
+    settings.filter = CopyOfVariable("STIPPLE_FILTER");
     const char* paused = getenv("STIPPLE_PAUSED");
     settings.paused = paused != nullptr && *paused != '\0';
   }

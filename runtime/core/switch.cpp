@@ -9,6 +9,7 @@
 #include "runtime/core/clock.h"
 #include "runtime/core/recorder.h"
 #include "runtime/core/region.h"
+#include "runtime/core/settings.h"
 
 namespace stipple {
 
@@ -68,4 +69,24 @@ extern "C" void stipple_switch(int on) {
   if (process == nullptr) return;
   stipple::Holding holding(process->lock);
   stipple::Switch(*process, on != 0);
+}
+
+// Names are made readable one by one without the lock (filter.h); regions are only ever added.
+extern "C" void stipple_switch_regions(const char* pattern, int on) {
+  using namespace stipple;
+  if (pattern == nullptr || ReadSettings().archive == nullptr) return;
+  const std::string_view text(pattern, TextBytes(pattern));
+  for (std::uint32_t region = 1; region <= LastRegion(); ++region) {
+    if (!IsFunctionNamed(region, text)) continue;
+    const SignalBlock signals_blocked;
+    Process* process = BeginProcess();
+    if (process == nullptr) return;
+    Holding holding(process->lock);
+    SwitchRegion(*process, region, on != 0);
+  }
+  const SignalBlock signals_blocked;
+  Process* process = BeginProcess();
+  if (process == nullptr) return;
+  Holding holding(process->lock);
+  UpdateAll();
 }

@@ -44,6 +44,7 @@ struct WalkedStream {
   std::map<std::uint32_t, std::uint64_t> counts;
   std::vector<stipple::ProcessEnd> ends;
   std::vector<stipple::Loss> losses;
+  std::vector<stipple::Filtered> filters;
   std::vector<std::string> problems;
 
   std::size_t EventCount() const {
@@ -74,6 +75,8 @@ inline void WalkDefinition(const EventWord* word, WalkedStream& stream) {
     stream.ends.push_back(ReadRecord<stipple::ProcessEnd>(word));
   } else if (kind == RecordKind::kLoss) {
     stream.losses.push_back(ReadRecord<stipple::Loss>(word));
+  } else if (kind == RecordKind::kFiltered) {
+    stream.filters.push_back(ReadRecord<stipple::Filtered>(word));
   } else if (kind == RecordKind::kVisitCounts) {
     const auto record = ReadRecord<stipple::VisitCounts>(word);
     for (std::uint64_t i = 0; i < record.entries; ++i)

@@ -470,7 +470,7 @@ struct Switched {
   static constexpr RecordKind kKind = RecordKind::kSwitched;
   EventWord header;
   std::uint64_t ticks;
-  std::uint32_t on;  // 0 off, 1 on
+  std::uint32_t on;      // 0 off, 1 on
   std::uint32_t region;  // 0: everything; else this region alone
 };
 static_assert(sizeof(Switched) == 24);

@@ -50,6 +50,34 @@ static inline void stipple_host(void) {
   if (record) record();
 }
 
+/* Switches recording off and on again, in all threads of this process. In between there are no
+ * events of any kind; visits that are open are recorded to their ends. The archive says when it was
+ * off. MPI programs switch all ranks at the same point, else messages lack one end. */
+static inline void stipple_stop(void) {
+  void (*record)(int);
+  STIPPLE_RUNTIME_FUNCTION(stipple_switch, record);
+  if (record) record(0);
+}
+static inline void stipple_start(void) {
+  void (*record)(int);
+  STIPPLE_RUNTIME_FUNCTION(stipple_switch, record);
+  if (record) record(1);
+}
+
+/* The same for the functions loaded now whose names match a pattern of a filter file, such as
+ * "solver::*". A function is recorded while both it and the process are switched on. Functions of
+ * -finstrument-functions have no names yet and match nothing but "*" and the like. */
+static inline void stipple_stop_regions(const char* pattern) {
+  void (*record)(const char*, int);
+  STIPPLE_RUNTIME_FUNCTION(stipple_switch_regions, record);
+  if (record) record(pattern, 0);
+}
+static inline void stipple_start_regions(const char* pattern) {
+  void (*record)(const char*, int);
+  STIPPLE_RUNTIME_FUNCTION(stipple_switch_regions, record);
+  if (record) record(pattern, 1);
+}
+
 #ifdef __cplusplus
 }
 #endif
