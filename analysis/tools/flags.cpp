@@ -8,8 +8,10 @@
 #include <regex>
 
 #include "analysis/tools/command.h"
+#include "analysis/tools/left_out.h"
 #include "analysis/tools/process.h"
 #include "analysis/trace/input_error.h"
+#include "analysis/trace/stream.h"
 
 namespace stipple {
 namespace {
@@ -79,18 +81,49 @@ std::string FlagsOf(const fs::path& plugin, bool link, bool is_static) {
   return flags;
 }
 
+/// What the plugin left out of OBJECT, and why.
+std::string ExplanationOf(const std::string& object) {
+  const std::optional<MappedFile> file = MappedFile::Open(object);
+  if (!file) throw InputError(object, "cannot be read");
+  SelectionAccount account;
+  switch (ReadAccount(file->bytes(), account)) {
+    case AccountProblem::kNotElf:
+      throw InputError(object, "is no object file, library or program for x86-64");
+    case AccountProblem::kThinArchive:
+      throw InputError(object, "is a thin archive, which holds no objects; name those");
+    case AccountProblem::kNone:
+      break;
+  }
+  if (account.empty())
+    throw InputError(object,
+                     "does not say what was instrumented: it was built without the plugin, has no "
+                     "functions of its own, or was compiled with GCC's -flto, where functions are "
+                     "selected when linking: name the program");
+  return Explain(account);
+}
+
 }  // namespace
 
 int RunFlags(const Arguments& arguments) {
   CLI::App app("Print the flags that make a compiler trace, or say that there is no plugin for it.",
                "flags");
   std::string compiler;
+  std::string object;
   bool link = false;
   bool is_static = false;
-  app.add_option("COMPILER", compiler, "g++, clang++, mpicxx, gfortran, ...")->required();
+  app.add_option("COMPILER", compiler, "g++, clang++, mpicxx, gfortran, ...");
   app.add_flag("--link", link, "what linking needs: with -flto, or --static");
   app.add_flag("--static", is_static, "with --link: for -static")->needs("--link");
+  app.add_option("--explain", object,
+                 "say what was left out of an object, library or program, and why")
+      ->type_name("OBJECT");
   if (!Parse(app, arguments)) return 0;
+  if (object.empty() == compiler.empty())
+    throw InputError("stipple flags", "takes either COMPILER or --explain OBJECT");
+  if (!object.empty()) {
+    WriteOut(ExplanationOf(object));
+    return 0;
+  }
   WriteOut(FlagsOf(PluginOf(compiler), link, is_static) + "\n");
   return 0;
 }

@@ -98,7 +98,7 @@ void LeadToPad(gimple* statement, eh_landing_pad pad) {
 
 void InstrumentGraph(function* fun) {
   const std::vector<gimple*> escaping =
-      flag_exceptions ? EscapingStatements(fun) : std::vector<gimple*>();
+      flag_exceptions && options.exceptions ? EscapingStatements(fun) : std::vector<gimple*>();
   const tree token = InsertEnter(fun);
   InsertLeaveAtReturns(fun, token);
   if (!escaping.empty()) {

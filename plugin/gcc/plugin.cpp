@@ -11,6 +11,7 @@ Options options;
 
 namespace {
 
+Selection selection(options);
 bool object_code_needed = false;
 
 bool CanHoldEvents(function* fun) {
@@ -42,7 +43,7 @@ class EventPass : public gimple_opt_pass {
   bool gate(function*) override { return options.position == position; }
 
   unsigned int execute(function* fun) override {
-    if (!CanHoldEvents(fun) || !Select(FactsOf(fun), options).instrument) return 0;
+    if (!CanHoldEvents(fun) || !selection.Select(FactsOf(fun)).instrument) return 0;
     if (position == Position::kSource) {
       InstrumentSequence(fun);
       AddObjectCode();
@@ -88,6 +89,22 @@ void WriteObjectCode(void*, void*) {
           ObjectCode().data(), intel ? "\t.intel_syntax noprefix\n" : "");
 }
 
+// As written, functions are selected before link-time optimisation, so the account has to travel
+// the way of the program's own file-scope assembly; after inlining it goes straight into the
+// output.
+void AddAccount(void*, void*) {
+  if (options.position != Position::kSource || selection.Account().empty()) return;
+  const std::string code = AccountCode(selection.Account());
+  symtab->finalize_toplevel_asm(build_string(unsigned(code.size()), code.c_str()));
+}
+
+void FinishAccount(void*, void*) {
+  if (const std::string note = selection.Note(); !note.empty())
+    fprintf(stderr, "%s\n", note.c_str());
+  if (options.position == Position::kSource || selection.Account().empty()) return;
+  fputs(AccountCode(selection.Account()).c_str(), asm_out_file);
+}
+
 const attribute_spec kAttributes[] = {
     {"xray_always_instrument", 0, 0, true, false, false, false, nullptr, nullptr},
     {"xray_never_instrument", 0, 0, true, false, false, false, nullptr, nullptr},
@@ -130,7 +147,9 @@ bool ReadOptions(const plugin_name_args* plugin) {
     fprintf(stderr, "%s\n", problem->c_str());
     return false;
   }
-  return true;
+  const auto problem = selection.ReadFilterFile();
+  if (problem) fprintf(stderr, "%s\n", problem->c_str());
+  return !problem;
 }
 
 }  // namespace
@@ -145,5 +164,7 @@ __attribute__((visibility("default"))) int plugin_init(plugin_name_args* plugin,
   RegisterPlacePass(plugin->base_name);
   register_callback(plugin->base_name, PLUGIN_ATTRIBUTES, RegisterAttributes, nullptr);
   register_callback(plugin->base_name, PLUGIN_FINISH_UNIT, WriteObjectCode, nullptr);
+  register_callback(plugin->base_name, PLUGIN_ALL_IPA_PASSES_START, AddAccount, nullptr);
+  register_callback(plugin->base_name, PLUGIN_FINISH_UNIT, FinishAccount, nullptr);
   return 0;
 }

@@ -119,14 +119,14 @@ bool GivesExceptionsBack(const llvm::Function& function) {
 
 }  // namespace
 
-void Instrument(llvm::Function& function) {
+void Instrument(llvm::Function& function, bool exceptions) {
   ForgetPurity(function);
-  if (GivesExceptionsBack(function)) EnterPadsForEveryException(function);
+  if (exceptions && GivesExceptionsBack(function)) EnterPadsForEveryException(function);
 
   llvm::Value* token = InsertEnter(function);
 
   llvm::SmallVector<llvm::Instruction*, 4> exits;
-  llvm::EscapeEnumerator enumerator(function, "stipple_leave", /*HandleExceptions=*/true);
+  llvm::EscapeEnumerator enumerator(function, "stipple_leave", exceptions);
   while (llvm::IRBuilder<>* exit = enumerator.Next()) exits.push_back(&*exit->GetInsertPoint());
   for (llvm::Instruction* exit : exits) InsertLeave(exit, token);
 }

@@ -23,8 +23,9 @@ struct OwnedRegion {
 };
 OwnedRegion RegionOf(const llvm::Function& function);
 
-/// Inserts enter, and leave at each exit: return, exception, and before a musttail call.
-void Instrument(llvm::Function& function);
+/// Inserts enter, and leave at each exit: return, exception if `exceptions`, and before a musttail
+/// call.
+void Instrument(llvm::Function& function, bool exceptions);
 
 }  // namespace stipple::plugin
 

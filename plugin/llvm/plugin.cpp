@@ -16,12 +16,19 @@ llvm::cl::list<std::string> given_options("stipple-", llvm::cl::Prefix,
                                           llvm::cl::desc("NAME=VALUE, an option of stipple"),
                                           llvm::cl::value_desc("NAME=VALUE"));
 
+// Both positions read the options; what is wrong with them is said once.
+void Say(const std::string& problem, llvm::LLVMContext& context) {
+  static bool said = false;
+  if (!said) context.emitError(problem);
+  said = true;
+}
+
 bool ReadOptions(Options& options, llvm::LLVMContext& context) {
   for (const std::string& given : given_options) {
     const std::size_t equals = given.find('=');
     const std::string value = equals == std::string::npos ? "" : given.substr(equals + 1);
     if (const auto problem = SetOption(options, given.substr(0, equals), value)) {
-      context.emitError(*problem);
+      Say(*problem, context);
       return false;
     }
   }
@@ -42,6 +49,11 @@ bool CanHoldEvents(const llvm::Function& function) {
          !function.hasFnAttribute(llvm::Attribute::Naked) && !IsUnsplitCoroutine(function);
 }
 
+void AddAccount(Selection& selection, llvm::Module& module) {
+  if (const std::string note = selection.Note(); !note.empty()) llvm::errs() << note << '\n';
+  if (!selection.Account().empty()) module.appendModuleInlineAsm(AccountCode(selection.Account()));
+}
+
 class EventPass : public llvm::PassInfoMixin<EventPass> {
  public:
   explicit EventPass(Position position) : position_(position) {}
@@ -52,12 +64,18 @@ class EventPass : public llvm::PassInfoMixin<EventPass> {
     Options options;
     if (!ReadOptions(options, module.getContext()) || options.position != position_)
       return llvm::PreservedAnalyses::all();
+    Selection selection(options);
+    if (const auto problem = selection.ReadFilterFile()) {
+      Say(*problem, module.getContext());
+      return llvm::PreservedAnalyses::all();
+    }
     bool changed = false;
     for (llvm::Function& function : module) {
-      if (!CanHoldEvents(function) || !Select(FactsOf(function), options).instrument) continue;
-      Instrument(function);
+      if (!CanHoldEvents(function) || !selection.Select(FactsOf(function)).instrument) continue;
+      Instrument(function, options.exceptions);
       changed = true;
     }
+    AddAccount(selection, module);
     if (!changed) return llvm::PreservedAnalyses::all();
     module.appendModuleInlineAsm({ObjectCode().data(), ObjectCode().size()});
     return llvm::PreservedAnalyses::none();
