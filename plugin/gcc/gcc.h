@@ -92,6 +92,9 @@ tree TokenIn(gimple* event);
 /// `copy` = `token`, in a way that the compiler cannot see through.
 gimple* OpaqueCopy(tree copy, tree token);
 
+/// To be called when the graph has changed: what GCC has concluded from it is no longer true.
+void ForgetGraph(function* fun);
+
 /// Inserts the events at either position.
 void InstrumentGraph(function* fun);     // after inlining: SSA, exceptions lowered
 void InstrumentSequence(function* fun);  // as written: one GIMPLE_BIND

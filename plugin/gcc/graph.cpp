@@ -105,9 +105,7 @@ void InstrumentGraph(function* fun) {
     const eh_landing_pad pad = InsertLandingPad(fun, token);
     for (gimple* statement : escaping) LeadToPad(statement, pad);
   }
-  free_dominance_info(fun, CDI_DOMINATORS);
-  free_dominance_info(fun, CDI_POST_DOMINATORS);
-  if (current_loops != nullptr) loops_state_set(LOOPS_NEED_FIXUP);
+  ForgetGraph(fun);
 }
 
 }  // namespace stipple::plugin

@@ -78,6 +78,12 @@ bool AfterException(gimple* event) {
 
 }  // namespace
 
+void ForgetGraph(function* fun) {
+  free_dominance_info(fun, CDI_DOMINATORS);
+  free_dominance_info(fun, CDI_POST_DOMINATORS);
+  if (current_loops != nullptr) loops_state_set(LOOPS_NEED_FIXUP);
+}
+
 bool GuardEvents(function* fun) {
   const std::vector<gimple*> events = Events(fun);
   for (gimple* event : events) {
@@ -86,6 +92,7 @@ bool GuardEvents(function* fun) {
     else if (!AfterException(event))
       GuardLeave(event);
   }
+  if (!events.empty()) ForgetGraph(fun);
   return !events.empty();
 }
 

@@ -281,10 +281,9 @@ bool LeaveBeforeTailCalls(function* fun) {
     moved = true;
   }
   if (!moved) return false;
-  free_dominance_info(fun, CDI_DOMINATORS);
-  free_dominance_info(fun, CDI_POST_DOMINATORS);
-  if (current_loops != nullptr) loops_state_set(LOOPS_NEED_FIXUP);
+  ForgetGraph(fun);
   delete_unreachable_blocks();
+  maybe_remove_unreachable_handlers();
   mark_virtual_operands_for_renaming(fun);
   return true;
 }
