@@ -61,7 +61,8 @@ class PlacePass : public gimple_opt_pass {
   explicit PlacePass(gcc::context* context) : gimple_opt_pass(kPassData, context) {}
 
   unsigned int execute(function* fun) override {
-    const bool moved = flag_optimize_sibling_calls && LeaveBeforeTailCalls(fun);
+    const bool preserve = flag_optimize_sibling_calls && options.tail_calls_preserved;
+    const bool moved = preserve && LeaveBeforeTailCalls(fun);
     KeepLeavesAfterCalls(fun);
     const bool guarded = GuardEvents(fun);
     if (moved) return TODO_update_ssa | TODO_cleanup_cfg;
