@@ -29,7 +29,7 @@ Analysis::Analysis(const Trace& of) : trace(of), profiles(of.locations().size())
   waits = FindWaits(trace, mpi);
   health = trace.Health();
   for (const Location& l : trace.locations()) {
-    const std::string& where = trace.ProcessOf(l).stream->file_name;
+    const std::string& where = trace.ProcessOf(l).where;
     health.Add(Defect::kLeaveWithoutEnter, where, leaves_without_enter[l.index]);
     health.Add(Defect::kEnterWithoutLeave, where, enters_without_leave[l.index]);
   }

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "analysis/report/text.h"
+#include "analysis/stats/number.h"
 #include "analysis/tools/command.h"
 #include "analysis/tools/launcher.h"
 #include "analysis/tools/process.h"
@@ -154,11 +155,11 @@ void Summarise(const RunOptions& options, int status) {
   const Trace trace = Trace::Open(archive);
   const TraceHealth health = trace.Health();
   fmt::print(stderr, "stipple: recorded {} in {} of {}: {}, {}{}\n",
-             CountText(trace.EventCount(), "event"),
+             FormatCount(trace.EventCount(), "event"),
              fmt::format("{} process{}", trace.processes().size(),
                          trace.processes().size() == 1 ? "" : "es"),
-             CountText(static_cast<std::uint64_t>(trace.RankCount()), "rank"),
-             BytesText(BytesOnDisk(archive)), LossText(health),
+             FormatCount(static_cast<std::uint64_t>(trace.RankCount()), "rank"),
+             FormatBytes(static_cast<double>(BytesOnDisk(archive))), LossText(health),
              health.Sound() ? "" : fmt::format(" (problems: stipple check {})", archive));
   fmt::print(stderr, "stipple: next: stipple report {} -o {}.html\n", archive,
              fs::path(archive).stem().string());

@@ -37,6 +37,9 @@ constexpr std::array kDefects = {
                 "events of undefined regions"},
     DefectEntry{Defect::kUndefinedName, "undefined-name", "mark or counter without a name",
                 "marks or counters without a name"},
+    DefectEntry{Defect::kUnnamedFunction, "unnamed-function",
+                "function has no name: its file is gone, was built anew or is stripped",
+                "functions have no names: their file is gone, was built anew or is stripped"},
     DefectEntry{Defect::kUndefinedCommunicator, "undefined-communicator",
                 "event on an undefined communicator", "events on undefined communicators"},
     DefectEntry{Defect::kLeaveWithoutEnter, "leave-without-enter", "leave event has no enter event",
@@ -90,6 +93,10 @@ void TraceHealth::Add(Defect defect, std::string_view where, std::uint64_t count
 
 void TraceHealth::Add(const TraceHealth& other) {
   for (const Problem& p : other.problems_) Add(p.defect, p.where, p.count);
+}
+
+void TraceHealth::AddAt(std::string_view where, const TraceHealth& other) {
+  for (const Problem& p : other.problems_) Add(p.defect, where, p.count);
 }
 
 std::uint64_t TraceHealth::CountOf(Defect defect) const {

@@ -164,6 +164,41 @@ struct DefinitionReader {
     return true;
   }
 
+  bool Module(std::span<const EventWord> words) {
+    DefineModule d;
+    if (!Get(words, d)) return false;
+    const auto text =
+        Text<DefineModule>(words, std::uint64_t{d.path_bytes} + std::uint64_t{d.build_id_bytes});
+    if (!text) return false;
+    stream.modules.push_back({d.module, text->substr(0, d.path_bytes), text->substr(d.path_bytes)});
+    return true;
+  }
+
+  bool Code(std::span<const EventWord> words) {
+    DefineCode d;
+    if (!Get(words, d)) return false;
+    stream.code.push_back({d.region, d.module, d.offset});
+    return true;
+  }
+
+  bool Switch(std::span<const EventWord> words) {
+    Switched d;
+    if (!Get(words, d)) return false;
+    stream.switches.push_back(d);
+    return true;
+  }
+
+  bool Filter(std::span<const EventWord> words) {
+    Filtered d;
+    if (!Get(words, d) || d.filtered > d.functions) return false;
+    const auto text = Text<Filtered>(words, d.path_bytes);
+    if (!text) return false;
+    stream.filter.path = *text;
+    stream.filter.functions += d.functions;
+    stream.filter.filtered += d.filtered;
+    return true;
+  }
+
   bool Host(std::span<const EventWord>) { return stream.is_host = true; }
 
   bool Read(std::span<const EventWord> words) {
@@ -192,6 +227,14 @@ struct DefinitionReader {
         return Available(words);
       case RecordKind::kCommandLine:
         return Command(words);
+      case RecordKind::kDefineModule:
+        return Module(words);
+      case RecordKind::kDefineCode:
+        return Code(words);
+      case RecordKind::kSwitched:
+        return Switch(words);
+      case RecordKind::kFiltered:
+        return Filter(words);
       default:
         return true;  // of a newer writer, which says so if it matters
     }

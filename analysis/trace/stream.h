@@ -5,6 +5,7 @@
 #define STIPPLE_ANALYSIS_TRACE_STREAM_H
 
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <span>
@@ -81,6 +82,24 @@ struct CommunicatorDefinition {
   std::uint32_t creation = 0;
   std::vector<std::int32_t> world_ranks;
 };
+/// A file whose functions are known by address.
+struct ModuleDefinition {
+  std::uint32_t module = 0;
+  std::string_view path;
+  std::string_view build_id;  // bytes
+};
+/// Where the function of a region lies.
+struct CodeDefinition {
+  std::uint32_t region = 0;
+  std::uint32_t module = 0;
+  std::uint64_t offset = 0;
+};
+/// What the run-time filter did.
+struct FilterUse {
+  std::string_view path;  // empty: there was none
+  std::uint64_t functions = 0;
+  std::uint64_t filtered = 0;
+};
 struct AvailabilityDefinition {
   std::string_view what;
   bool available = false;
@@ -108,6 +127,11 @@ struct Stream {
   std::vector<CommunicatorDefinition> communicators;
   std::vector<ClockSync> syncs;
   std::vector<AvailabilityDefinition> availability;
+  std::vector<ModuleDefinition> modules;
+  std::vector<CodeDefinition> code;
+  std::deque<std::string> symbol_texts;  // what the files of code said; regions refer to them
+  std::vector<Switched> switches;
+  FilterUse filter;
   std::vector<std::pair<std::uint32_t, std::uint64_t>> visit_counts;
   std::optional<DefineWorld> world;
   std::optional<ProcessEnd> end;

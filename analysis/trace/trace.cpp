@@ -14,6 +14,7 @@
 #include "analysis/trace/input_error.h"
 #include "analysis/trace/parallel.h"
 #include "analysis/trace/ranks.h"
+#include "analysis/trace/symbols.h"
 
 namespace stipple {
 namespace {
@@ -193,7 +194,7 @@ void Trace::ReadStreams(const std::vector<std::string>& files) {
   for (auto& stream : streams) {
     if (!stream) continue;
     // Of a process of which nothing is left only the loss is known: it is no further rank.
-    if (stream->threads.empty() && !stream->world) {
+    if (stream->threads.empty() && !stream->world && stream->switches.empty()) {
       health_.Add(stream->health);
     } else {
       streams_.push_back(std::move(stream));
@@ -216,9 +217,10 @@ Trace Trace::Open(const std::string& path, ReadMeter* meter) {
   trace.meter_ = meter;
   trace.ReadStreams(files);
   if (trace.streams_.empty()) trace.health_.Add(Defect::kEmptyArchive, "");
-  for (const auto& stream : trace.streams_) trace.health_.Add(stream->health);
-  trace.clocks_ = CorrectClocks(trace.streams_, trace.health_);
   trace.processes_ = NumberProcesses(trace.streams_);
+  for (const Process& p : trace.processes_) trace.health_.AddAt(p.where, p.stream->health);
+  trace.clocks_ = CorrectClocks(trace.streams_, trace.health_);
+  NameCode(trace.streams_, trace.health_);
   trace.UnifyDefinitions();
   trace.PlaceLocations();
   std::vector<bool> seen;
@@ -309,7 +311,7 @@ TraceHealth Trace::Health() const {
   TraceHealth health = health_;
   for (const Location& l : locations_) {
     const ScanCounts& counts = CountsOf(l);
-    const std::string& where = ProcessOf(l).stream->file_name;
+    const std::string& where = ProcessOf(l).where;
     health.Add(Defect::kUncommitted, where, counts.uncommitted);
     health.Add(Defect::kOpenRecord, where, counts.open_records);
     health.Add(Defect::kBadRecord, where, counts.bad_records);

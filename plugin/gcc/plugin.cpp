@@ -54,6 +54,25 @@ class EventPass : public gimple_opt_pass {
   }
 };
 
+// Without optimisation there is no such pass, and no need of it.
+class PlacePass : public gimple_opt_pass {
+ public:
+  explicit PlacePass(gcc::context* context) : gimple_opt_pass(kPassData, context) {}
+
+  unsigned int execute(function* fun) override {
+    const bool moved = flag_optimize_sibling_calls && LeaveBeforeTailCalls(fun);
+    KeepLeavesAfterCalls(fun);
+    const bool guarded = GuardEvents(fun);
+    if (moved) return TODO_update_ssa | TODO_cleanup_cfg;
+    return guarded ? TODO_update_ssa : 0;
+  }
+};
+
+void RegisterPlacePass(const char* plugin) {
+  register_pass_info info = {new PlacePass(g), "tailc", 1, PASS_POS_INSERT_BEFORE};
+  register_callback(plugin, PLUGIN_PASS_MANAGER_SETUP, nullptr, &info);
+}
+
 template <Position position>
 void Register(const char* plugin, const char* after) {
   register_pass_info info = {new EventPass<position>(g), after, 1, PASS_POS_INSERT_AFTER};
@@ -123,6 +142,7 @@ __attribute__((visibility("default"))) int plugin_init(plugin_name_args* plugin,
   if (!IsRightCompiler(compiler) || !ReadOptions(plugin)) exit(FATAL_EXIT_CODE);
   Register<Position::kSource>(plugin->base_name, "*warn_unused_result");
   Register<Position::kAfterInlining>(plugin->base_name, "ehdisp");
+  RegisterPlacePass(plugin->base_name);
   register_callback(plugin->base_name, PLUGIN_ATTRIBUTES, RegisterAttributes, nullptr);
   register_callback(plugin->base_name, PLUGIN_FINISH_UNIT, WriteObjectCode, nullptr);
   return 0;

@@ -27,6 +27,17 @@ class Line {
     while ((number /= 10) != 0);
     return Add(first);
   }
+  /// "0x1f40".
+  Line& AddHex(std::uint64_t number) {
+    char digits[19];
+    char* first = digits + 18;
+    *first = '\0';
+    do *--first = "0123456789abcdef"[number & 15];
+    while ((number >>= 4) != 0);
+    *--first = 'x';
+    *--first = '0';
+    return Add(first);
+  }
   /// Milliseconds as seconds with three decimals.
   Line& AddSeconds(std::uint64_t ms) {
     const char decimals[] = {'.', static_cast<char>('0' + ms / 100 % 10),

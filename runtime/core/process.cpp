@@ -15,6 +15,7 @@
 #include "runtime/core/region.h"
 #include "runtime/core/settings.h"
 #include "runtime/core/stream.h"
+#include "runtime/core/switch.h"
 
 namespace stipple {
 namespace {
@@ -194,6 +195,11 @@ Process* ThisProcess() {
   return process;
 }
 
+bool HasStopped() {
+  const Process* process = this_process.load(std::memory_order_acquire);
+  return process != nullptr && process->state.load(std::memory_order_acquire) == State::kStopped;
+}
+
 Process* BeginProcess() {
   Process* process = this_process.load(std::memory_order_acquire);
   if (process != nullptr) {
@@ -216,10 +222,12 @@ Process* BeginProcess() {
       SayNothingRecorded(*process, settings.archive);
       return nullptr;
     }
+    if (!begun_before && settings.paused) BeginPaused();
     begun_before = true;
     PrepareThreads();
     DefineCommandLine(*process);
     DefineAll(*process);
+    DefineSwitches(*process);
     if (process->state.load(std::memory_order_relaxed) == State::kNew)
       process->state.store(State::kRecording, std::memory_order_release);
   }
@@ -297,6 +305,7 @@ bool stipple_begin() {
 bool stipple_recording() {
   const stipple::Process* process = stipple::this_process.load(std::memory_order_acquire);
   return process != nullptr &&
-         process->state.load(std::memory_order_acquire) == stipple::State::kRecording;
+         process->state.load(std::memory_order_acquire) == stipple::State::kRecording &&
+         stipple::IsSwitchedOn();
 }
 }

@@ -49,7 +49,9 @@ struct Process {
   int error;  // errno that stopped the recording
   std::uint32_t said_line;
   std::uint32_t said_counts;
-  std::uint64_t stop_ms;  // after begin
+  std::uint64_t stop_ms;     // after begin
+  std::uint32_t unloading;   // calls of dlclose that are under way
+  std::uint32_t reserved;
   StreamFile file;
   FileHeader* header;  // in the file, mapped
   DefinitionChunk definitions;
@@ -60,6 +62,9 @@ struct Process {
 
 /// This process's state, never begun by the call itself; null only without memory.
 Process* ThisProcess();
+
+/// Recording could not begin or go on, and never will.
+bool HasStopped();
 
 /// Begins the stream if that has not been tried; returns the process if it records now, else null.
 /// Signals are blocked, the lock is not held.

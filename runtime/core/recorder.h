@@ -18,7 +18,7 @@ extern "C" {
 /// cannot be written).
 bool stipple_begin();
 
-/// Whether events are being recorded now.
+/// Whether events are being recorded now: the stream has begun, and nobody has switched it off.
 bool stipple_recording();
 
 /// The id of a region, defined at first use; the same name, file and line give the same id. Kind:
@@ -46,6 +46,7 @@ void stipple_define(const void* record, uint8_t kind, size_t bytes, const void* 
 void stipple_record_mark(struct stipple_name* name);
 void stipple_record_counter(struct stipple_name* name, double value);
 void stipple_record_host(void);
+void stipple_switch(int on);
 }
 #pragma GCC visibility pop
 

@@ -4,10 +4,12 @@
 // it, so a fork by another thread finds every table sound.
 #include "runtime/core/region.h"
 
+#include "runtime/core/address.h"
 #include "runtime/core/arena.h"
+#include "runtime/core/line.h"
 #include "runtime/core/recorder.h"
-#include "runtime/core/settings.h"
 #include "runtime/core/stream.h"
+#include "runtime/core/switch.h"
 
 namespace stipple {
 namespace {
@@ -23,6 +25,9 @@ struct Entry {
   std::uint32_t detail_bytes;
   std::uint32_t line;
   RegionKind kind;
+  std::uint64_t offset;  // in `module`: a function known by its address
+  std::uint32_t module;  // 0: one that brought its name
+  bool off;              // switched off by itself
 };
 
 std::uint64_t HashOf(const Entry& entry) {
@@ -34,7 +39,7 @@ std::uint64_t HashOf(const Entry& entry) {
   };
   add(entry.name, entry.name_bytes);
   add(entry.detail, entry.detail_bytes);
-  hash = (hash ^ entry.line) * 0x100000001b3u;
+  hash = (hash ^ entry.line ^ std::uint64_t{entry.module} << 32) * 0x100000001b3u;
   return hash ^ hash >> 32;
 }
 
@@ -45,7 +50,8 @@ bool SameText(const char* a, const char* b, std::uint32_t bytes) {
 }
 
 bool Same(const Entry& a, const Entry& b) {
-  return a.hash == b.hash && a.line == b.line && a.name_bytes == b.name_bytes &&
+  return a.hash == b.hash && a.line == b.line && a.module == b.module && a.offset == b.offset &&
+         a.name_bytes == b.name_bytes &&
          a.detail_bytes == b.detail_bytes && SameText(a.name, b.name, a.name_bytes) &&
          SameText(a.detail, b.detail, a.detail_bytes);
 }
@@ -122,33 +128,58 @@ class Table {
 constinit Table<kMaxRegion> regions;
 constinit Table<65535> names;
 
-/// Objects with descriptors, in any order.
+/// An object with descriptors, and the region of each (0: never recorded).
+struct Object {
+  stipple_dso* dso;
+  std::uint32_t* regions;
+};
+
+/// In any order.
 struct ObjectList {
-  stipple_dso** objects;
+  Object* objects;
   std::uint32_t count;
   std::uint32_t room;
 };
 constinit ObjectList list{};
 
-bool AddObject(stipple_dso* object) {
+std::size_t DescriptorCount(const stipple_dso& object) {
+  return static_cast<std::size_t>(object.end - object.begin);
+}
+
+/// Adds an object whose functions have no region yet; null without memory.
+Object* AddObject(stipple_dso* dso) {
   if (list.count == list.room) {
     const std::uint32_t room = list.room == 0 ? 64 : 2 * list.room;
-    auto** objects = static_cast<stipple_dso**>(arena.Take(room * sizeof(stipple_dso*)));
-    if (objects == nullptr) return false;
+    auto* objects = static_cast<Object*>(arena.Take(room * sizeof(Object)));
+    if (objects == nullptr) return nullptr;
     for (std::uint32_t i = 0; i < list.count; ++i) objects[i] = list.objects[i];
     std::atomic_signal_fence(std::memory_order_seq_cst);
     list.objects = objects;
     list.room = room;
   }
-  list.objects[list.count] = object;
+  // Mapped, so that it can be given back: objects may be loaded and unloaded without end.
+  auto* ids = static_cast<std::uint32_t*>(MapMemory(DescriptorCount(*dso) * sizeof(std::uint32_t)));
+  if (ids == nullptr) return nullptr;
+  list.objects[list.count] = {dso, ids};
   std::atomic_signal_fence(std::memory_order_seq_cst);
-  ++list.count;
-  return true;
+  return &list.objects[list.count++];
+}
+
+void RemoveObject(std::uint32_t index) {
+  const Object gone = list.objects[index];
+  list.objects[index] = list.objects[list.count - 1];
+  std::atomic_signal_fence(std::memory_order_seq_cst);
+  --list.count;
+  Syscall(SYS_munmap, Argument(gone.regions),
+          static_cast<long>(DescriptorCount(*gone.dso) * sizeof(std::uint32_t)));
+}
+
+void SetSlot(stipple_descriptor& descriptor, std::uint32_t token) {
+  std::atomic_ref<std::uint32_t>(descriptor.id).store(token, std::memory_order_release);
 }
 
 void Silence(stipple_dso& object) {
-  for (stipple_descriptor* d = object.begin; d < object.end; ++d)
-    std::atomic_ref<std::uint32_t>(d->id).store(0, std::memory_order_relaxed);
+  for (stipple_descriptor* d = object.begin; d < object.end; ++d) SetSlot(*d, 0);
 }
 
 bool DefineRegionRecord(Process& process, std::uint32_t id) {
@@ -159,8 +190,15 @@ bool DefineRegionRecord(Process& process, std::uint32_t id) {
   record.line = entry.line;
   record.name_bytes = entry.name_bytes;
   record.file_bytes = entry.detail_bytes;
-  return Define(process, &record, DefineRegion::kKind, sizeof record, entry.name, entry.name_bytes,
-                entry.detail, entry.detail_bytes);
+  if (!Define(process, &record, DefineRegion::kKind, sizeof record, entry.name, entry.name_bytes,
+              entry.detail, entry.detail_bytes))
+    return false;
+  if (entry.module == 0) return true;
+  DefineCode code{};
+  code.region = id;
+  code.module = entry.module;
+  code.offset = entry.offset;
+  return Define(process, &code, DefineCode::kKind, sizeof code);
 }
 
 bool DefineNameRecord(Process& process, std::uint32_t id) {
@@ -213,9 +251,24 @@ const char* TextAt(const std::int64_t& field) {
   return field == 0 ? nullptr : reinterpret_cast<const char*>(&field) + field;
 }
 
+/// Gives every function of a new object its region.
+void DefineObject(Process& process, const Object& object) {
+  for (std::size_t i = 0; i < DescriptorCount(*object.dso); ++i) {
+    stipple_descriptor& d = object.dso->begin[i];
+    const char* name = TextAt(d.name);
+    if (name == nullptr) continue;
+    const std::uint32_t region = RegionFor(
+        process, MakeEntry(name, TextAt(d.file), d.line, RegionKind::kFunction));
+    if (process.state.load(std::memory_order_relaxed) == State::kStopped) return;
+    object.regions[i] = region;
+    SetSlot(d, TokenOf(region));
+  }
+}
+
 }  // namespace
 
 void DefineAll(Process& process) {
+  DefineModules(process);
   for (std::uint32_t id = 1; id <= regions.count(); ++id)
     if (!DefineRegionRecord(process, id)) return;
   for (std::uint32_t id = 1; id <= names.count(); ++id)
@@ -223,7 +276,45 @@ void DefineAll(Process& process) {
 }
 
 void SilenceAll() {
-  for (std::uint32_t i = 0; i < list.count; ++i) Silence(*list.objects[i]);
+  for (std::uint32_t i = 0; i < list.count; ++i) Silence(*list.objects[i].dso);
+  SilenceAddresses();
+}
+
+std::uint32_t TokenOf(std::uint32_t region) {
+  return region != 0 && IsSwitchedOn() && !regions[region].off ? region : 0;
+}
+
+void UpdateAll() {
+  for (std::uint32_t i = 0; i < list.count; ++i) {
+    const Object& object = list.objects[i];
+    for (std::size_t d = 0; d < DescriptorCount(*object.dso); ++d)
+      SetSlot(object.dso->begin[d], TokenOf(object.regions[d]));
+  }
+  UpdateAddresses();
+}
+
+void DefineRegionSwitches(Process& process) {
+  for (std::uint32_t id = 1; id <= regions.count(); ++id)
+    if (regions[id].off) DefineSwitch(process, false, id);
+}
+
+std::uint32_t CodeRegion(Process& process, const Module* module, std::uintptr_t address) {
+  Line<256> name;
+  Entry entry{};
+  if (module == nullptr) {
+    name.AddHex(address);
+    entry = MakeEntry(name.text(), nullptr, 0, RegionKind::kFunction);
+    return RegionFor(process, entry);
+  }
+  const char* file = module->path;
+  for (const char* c = file; *c != '\0'; ++c)
+    if (*c == '/') file = c + 1;
+  name.Add(file).Add("+").AddHex(address - module->load_bias);
+  entry = MakeEntry(name.text(), module->path, 0, RegionKind::kFunction);
+  entry.module = module->number;
+  entry.offset = address - module->load_bias;
+  entry.hash = HashOf(entry);
+  return RegionFor(process, entry);
 }
 
 std::uint32_t LastRegion() { return regions.count(); }
@@ -248,18 +339,11 @@ void stipple_register(struct stipple_dso* dso) {
   stipple::Process* process = stipple::BeginProcess();
   if (process == nullptr) return;
   stipple::Holding holding(process->lock);
-  if (!stipple::AddObject(dso)) return;
+  const stipple::Object* object = stipple::AddObject(dso);
+  if (object == nullptr) return;
   dso->tp_offset = stipple::ControlSlotOffset();
   dso->slow = stipple_slow;
-  for (stipple_descriptor* d = dso->begin; d < dso->end; ++d) {
-    const char* name = stipple::TextAt(d->name);
-    if (name == nullptr) continue;
-    const std::uint32_t id =
-        stipple::RegionFor(*process, stipple::MakeEntry(name, stipple::TextAt(d->file), d->line,
-                                                        stipple::RegionKind::kFunction));
-    if (process->state.load(std::memory_order_relaxed) == stipple::State::kStopped) break;
-    std::atomic_ref<std::uint32_t>(d->id).store(id, std::memory_order_release);
-  }
+  stipple::DefineObject(*process, *object);
 }
 
 void stipple_unregister(struct stipple_dso* dso) {
@@ -269,11 +353,9 @@ void stipple_unregister(struct stipple_dso* dso) {
   if (process == nullptr) return;
   stipple::Holding holding(process->lock);
   for (std::uint32_t i = 0; i < stipple::list.count; ++i) {
-    if (stipple::list.objects[i] != dso) continue;
+    if (stipple::list.objects[i].dso != dso) continue;
     stipple::Silence(*dso);
-    stipple::list.objects[i] = stipple::list.objects[stipple::list.count - 1];
-    std::atomic_signal_fence(std::memory_order_seq_cst);
-    --stipple::list.count;
+    stipple::RemoveObject(i);
     return;
   }
 }

@@ -6,15 +6,28 @@
 
 #include <cstdint>
 
+#include "runtime/core/module.h"
 #include "runtime/core/process.h"
 
 namespace stipple {
 
-/// Writes the definition of every region and name there is. The lock is held.
+/// Writes the definition of every module, region and name there is. The lock is held.
 void DefineAll(Process& process);
 
 /// Sets the id slots of every registered object to 0: no more events. The lock is held.
 void SilenceAll();
+
+/// What the id slot of a region's functions is to hold now: its id, or 0 while it is switched off.
+std::uint32_t TokenOf(std::uint32_t region);
+
+/// Sets every id slot to what it is to hold. The lock is held.
+void UpdateAll();
+
+/// The region of the function at `address` of `module` (null: of no file). The lock is held.
+std::uint32_t CodeRegion(Process& process, const Module* module, std::uintptr_t address);
+
+/// Writes which regions are switched off by themselves. The lock is held.
+void DefineRegionSwitches(Process& process);
 
 /// The highest region id given out.
 std::uint32_t LastRegion();

@@ -56,6 +56,8 @@ const Settings& ReadSettings() {
     if (copy != nullptr) CopyBytes(copy, archive, bytes);
     settings.archive = copy;
     ReadClockSetting();
+    const char* paused = getenv("STIPPLE_PAUSED");
+    settings.paused = paused != nullptr && *paused != '\0';
   }
   was_read = true;
   return settings;

@@ -10,10 +10,11 @@ namespace stipple {
 struct Settings {
   const char* archive;       // absolute path of an existing directory; null: record nothing
   std::uint64_t clock_mask;  // stipple_control.clock_mask
+  bool paused;               // begin switched off
   char text[256];            // for the file header, "clock=exact"
 };
 
-/// Reads STIPPLE_ARCHIVE and STIPPLE_CLOCK once; an unknown clock is named on stderr and exact is
+/// Reads STIPPLE_ARCHIVE, STIPPLE_CLOCK and STIPPLE_PAUSED once; an unknown clock is named on stderr and exact is
 /// used.
 const Settings& ReadSettings();
 

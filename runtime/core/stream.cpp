@@ -18,11 +18,12 @@
 #include "runtime/core/region.h"
 #include "runtime/core/save_area.h"
 #include "runtime/core/settings.h"
+#include "runtime/core/skipped.h"
+#include "runtime/core/switch.h"
 
 extern "C" {
 /// Reservations in it always fail: what a thread points at until its first event.
 constinit stipple_control stipple_no_stream{};
-/// What stipple_dso.tp_offset leads to; also read in slow.S.
 __thread stipple_control* stipple_stream = &stipple_no_stream;
 /// In the slow path: an event from within would be one of the runtime itself.
 static __thread bool stipple_inside = false;
@@ -106,13 +107,6 @@ Thread* NewThread() {
   return thread;
 }
 
-/// Takes `bytes` of the stream in one instruction; they are valid if they end at or before `end`.
-inline std::uint64_t Reserve(stipple_control& control, std::uint64_t bytes) {
-  std::uint64_t slot = bytes;
-  __asm__ volatile("xaddq %0, %1" : "+r"(slot), "+m"(control.cur) : : "memory", "cc");
-  return slot;
-}
-
 EventWord* WordAt(std::uint64_t address) { return reinterpret_cast<EventWord*>(address); }
 
 void Commit(EventWord* place, EventWord word) {
@@ -165,8 +159,14 @@ void AppendRecord(const void* record, RecordKind kind, std::size_t bytes) {
   Commit(place, MakeHeader(kind, bytes / 8, true));
 }
 
+/// Events of a visit that was entered while recording was switched off are none.
 std::uint64_t AppendEvent(std::uint32_t region, bool leave) {
-  if (region == 0) return ReadTicks();
+  const bool skipped = region != 0 && leave && TakeSkipped(region, __builtin_frame_address(0));
+  if (region == 0 || skipped) return ReadTicks();
+  if (!leave && !IsSwitchedOn()) {
+    NoteSkipped(region, __builtin_frame_address(0));
+    return ReadTicks();
+  }
   EventWord* place = ReserveRecord(sizeof(EventWord));
   const std::uint64_t ticks = ReadTicks();
   if (place != nullptr) Commit(place, MakeEvent(ticks, leave, RegionId{region}));
@@ -194,6 +194,7 @@ void EndThread(void* pointer) {
   AppendRecord(&record, ThreadEnd::kKind, sizeof record);
   const SignalBlock signals_blocked;
   Process* process = ThisProcess();
+  ForgetSkipped();
   if (thread->tid == 0 || process == nullptr) return;
   Holding holding(process->lock);
   thread->ended = 1;
@@ -234,6 +235,12 @@ std::uint64_t GatherCounts(const std::uint64_t* counts, std::uint32_t& region,
 }
 
 }  // namespace
+
+bool BeginThread() {
+  if (KnownThread() != nullptr) return true;
+  const Inside inside;
+  return !inside.again() && NewThread() != nullptr;
+}
 
 void PrepareThreads() {
   if (prepared) return;
@@ -277,7 +284,7 @@ void CountLost(std::uint64_t events) {
 
 extern "C" {
 
-/// What slow.S calls with the token of an event; returns the token for the exits.
+/// Also called by slow.S.
 std::uint32_t stipple_slow_event(std::uint32_t token) {
   using namespace stipple;
   const std::uint64_t arrived = ReadTicks();
@@ -308,6 +315,7 @@ uint64_t stipple_enter(uint32_t region) { return stipple::AppendEvent(region, fa
 uint64_t stipple_leave(uint32_t region) { return stipple::AppendEvent(region, true); }
 
 void stipple_append(const void* record, uint8_t kind, size_t bytes) {
+  if (!stipple::IsSwitchedOn()) return;
   if (bytes < 8 || bytes % 8 != 0 || bytes / 8 > stipple::kMaxRecordWords) return;
   stipple::AppendRecord(record, static_cast<stipple::RecordKind>(kind), bytes);
 }

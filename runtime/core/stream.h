@@ -31,6 +31,16 @@ struct Thread {
 static_assert(sizeof(Thread) <= 128);
 inline constexpr std::size_t kThreadBytes = 128;  // own cache lines
 
+/// Takes `bytes` of the stream in one instruction; they are valid if they end at or before `end`.
+inline std::uint64_t Reserve(stipple_control& control, std::uint64_t bytes) {
+  std::uint64_t slot = bytes;
+  __asm__ volatile("xaddq %0, %1" : "+r"(slot), "+m"(control.cur) : : "memory", "cc");
+  return slot;
+}
+
+/// Gives this thread a state of its own if it has none; false if it cannot record.
+bool BeginThread();
+
 /// Makes this thread able to record: what must be done once per process before the first event.
 void PrepareThreads();
 
@@ -45,7 +55,15 @@ void CountLost(std::uint64_t events);
 
 }  // namespace stipple
 
+extern "C" {
+/// The control block that this thread appends to; what stipple_dso.tp_offset leads to.
+extern __thread stipple_control* stipple_stream;
+
 /// Where instrumented code jumps when its fast path does not fit (slow.S).
-extern "C" void stipple_slow();
+void stipple_slow();
+
+/// An event that does not fit; `token` as in eax of the slow path. Returns the token for the exits.
+std::uint32_t stipple_slow_event(std::uint32_t token);
+}
 
 #endif

@@ -28,22 +28,23 @@ struct PartRule {
 const std::string kAbi = "runtime/include/stipple/abi.h";
 const std::string kFormat = "runtime/include/stipple/format.h";
 const std::string kUser = "runtime/include/stipple/user.h";
+const std::string kFilter = "runtime/include/stipple/filter.h";
 
 // The longest folder that holds a file rules it.
 const std::vector<PartRule> kRules = {
     {"runtime/include", {}, {}},
-    {"plugin/select", {}, {}},
+    {"plugin/select", {kFilter}, {}},
     {"plugin", {kAbi}, {}},
     {"plugin/gcc", {kAbi, "plugin/select", "plugin"}, {"gcc-plugin.h", "*gcc"}},
     {"plugin/llvm", {kAbi, "plugin/select", "plugin"}, {"llvm/"}},
-    {"runtime/core", {kAbi, kFormat, kUser}, {}},
+    {"runtime/core", {kAbi, kFormat, kUser, kFilter}, {}},
     {"runtime/system", {kAbi, kFormat, "runtime/core"}, {}},
     {"runtime/unwind", {kFormat}, {"libunwind"}},
     {"runtime/mpi", {kFormat, "runtime/core"}, {"mpi.h"}},
     {"raytracer", {kUser}, {"mpi.h", "png.h", "fmt/", "nlohmann/", "CLI/"}},
     {"raytracer/geometry", {"raytracer", kUser}, {"embree", "hwy/"}},
     {"raytracer/simulate", {"raytracer", kUser}, {"simgrid/", "smpi/", "mpi.h"}},
-    {"analysis/trace", {kFormat}, {"fmt/", "zstd.h"}},
+    {"analysis/trace", {kFormat}, {"fmt/", "zstd.h", "elfutils/"}},
     {"analysis/stats", {kFormat, "analysis/trace"}, {"fmt/"}},
     {"analysis/views", {"analysis/stats", "analysis/trace"}, {"fmt/", "vtk"}},
     {"analysis/report",
@@ -57,7 +58,7 @@ const std::vector<PartRule> kRules = {
      {"fmt/", "nlohmann/"}},
     {"analysis/tools",
      {"analysis/exemplar", "analysis/exchange", "analysis/report", "analysis/stats",
-      "analysis/trace", kFormat},
+      "analysis/trace", kFormat, kFilter},
      {"fmt/", "nlohmann/", "CLI/"}},
 };
 
@@ -118,7 +119,7 @@ bool Allowed(const PartRule& rule, const std::string& target) {
 bool IsLibrary(const std::string& name) {
   static const std::regex kPattern(
       "(mpi\\.h|png\\.h|fmt/.*|nlohmann/.*|CLI/.*|vtk.*|llvm/.*|embree.*|hwy/.*|simgrid/.*|smpi/.*|"
-      "otf2/.*|zstd\\.h|libunwind.*|gcc-plugin\\.h)");
+      "otf2/.*|zstd\\.h|elfutils/.*|libunwind.*|gcc-plugin\\.h)");
   return std::regex_match(name, kPattern);
 }
 

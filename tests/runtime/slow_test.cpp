@@ -77,6 +77,7 @@ class Slow : public testing::Test {
     setenv("STIPPLE_ARCHIVE", archive_->path().c_str(), 1);
     object_ = new Object<1>(kNames);
   }
+  static void TearDownTestSuite() { delete archive_; }
   static stipple_test::Directory* archive_;
   static Object<1>* object_;
 };

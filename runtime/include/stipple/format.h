@@ -137,6 +137,10 @@ enum class RecordKind : std::uint8_t {
   kVisitCounts = 73,
   kAvailability = 74,
   kCommandLine = 75,
+  kDefineModule = 76,
+  kDefineCode = 77,
+  kSwitched = 78,
+  kFiltered = 79,
 };
 
 // The header of an extended record: kind in the low 23 bits, bit 23 set once the record is closed,
@@ -436,6 +440,51 @@ struct CommandLine {
   std::uint32_t reserved;
 };
 static_assert(sizeof(CommandLine) == 16);
+
+/// A file with code whose functions are known by their addresses only (-finstrument-functions): its
+/// path as it was mapped, then the bytes of its build-id (none: it has none).
+struct DefineModule {
+  static constexpr RecordKind kKind = RecordKind::kDefineModule;
+  EventWord header;
+  std::uint32_t module;  // 1, 2, ...
+  std::uint32_t path_bytes;
+  std::uint32_t build_id_bytes;
+  std::uint32_t reserved;
+};
+static_assert(sizeof(DefineModule) == 24);
+
+/// Where the function of a region begins. Its definition, which stands before this one, has no name
+/// but "module+0xoffset": the reader looks for the symbol.
+struct DefineCode {
+  static constexpr RecordKind kKind = RecordKind::kDefineCode;
+  EventWord header;
+  std::uint32_t region;
+  std::uint32_t module;
+  std::uint64_t offset;  // address as the module's file numbers it: without where it was loaded
+};
+static_assert(sizeof(DefineCode) == 24);
+
+/// Recording was switched off or on: in between this process has no event but the leaves of frames
+/// that were open. A process that begins switched off says so.
+struct Switched {
+  static constexpr RecordKind kKind = RecordKind::kSwitched;
+  EventWord header;
+  std::uint64_t ticks;
+  std::uint32_t on;  // 0 off, 1 on
+  std::uint32_t region;  // 0: everything; else this region alone
+};
+static_assert(sizeof(Switched) == 24);
+
+/// What the filter did to the functions of one object; the filter's path follows. Records add up.
+struct Filtered {
+  static constexpr RecordKind kKind = RecordKind::kFiltered;
+  EventWord header;
+  std::uint32_t functions;  // that the object brought
+  std::uint32_t filtered;   // of them
+  std::uint32_t path_bytes;
+  std::uint32_t reserved;
+};
+static_assert(sizeof(Filtered) == 24);
 
 }  // namespace stipple
 

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+#include "analysis/trace/symbols.h"
+
+#include <elfutils/libdwfl.h>
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace stipple {
+namespace {
+
+struct Symbol {
+  std::string linkage_name;
+  std::string file;  // empty: no debug information
+  std::uint32_t line = 0;
+};
+
+/// A file of code, opened for its symbols.
+class SymbolFile {
+ public:
+  SymbolFile(const std::string& path, std::string_view build_id)
+      : session_(dwfl_begin(&kCallbacks), &dwfl_end) {
+    if (!session_) return;
+    dwfl_report_begin(session_.get());
+    module_ = dwfl_report_offline(session_.get(), "", path.c_str(), -1);
+    dwfl_report_end(session_.get(), nullptr, nullptr);
+    // The build-id is known once the file has been opened.
+    if (module_ != nullptr && dwfl_module_getelf(module_, &bias_) == nullptr) module_ = nullptr;
+    if (module_ != nullptr && BuildId() != build_id) module_ = nullptr;
+  }
+
+  /// The function that begins at `offset`, counted as the file does.
+  std::optional<Symbol> At(std::uint64_t offset) const {
+    if (module_ == nullptr) return std::nullopt;
+    GElf_Off distance = 0;
+    GElf_Sym symbol;
+    const char* name = dwfl_module_addrinfo(module_, offset + bias_, &distance, &symbol, nullptr,
+                                            nullptr, nullptr);
+    if (name == nullptr || distance != 0) return std::nullopt;
+    Symbol found{name, "", 0};
+    if (Dwfl_Line* row = dwfl_module_getsrc(module_, offset + bias_)) {
+      int line = 0;
+      if (const char* file = dwfl_lineinfo(row, nullptr, &line, nullptr, nullptr, nullptr)) {
+        found.file = file;
+        found.line = static_cast<std::uint32_t>(line);
+      }
+    }
+    return found;
+  }
+
+ private:
+  std::string_view BuildId() const {
+    const unsigned char* bytes = nullptr;
+    GElf_Addr address = 0;
+    const int count = dwfl_module_build_id(module_, &bytes, &address);
+    if (count <= 0) return {};
+    return {reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(count)};
+  }
+
+  static constexpr Dwfl_Callbacks kCallbacks = {nullptr, &dwfl_standard_find_debuginfo,
+                                                &dwfl_offline_section_address, nullptr};
+  std::unique_ptr<Dwfl, decltype(&dwfl_end)> session_;
+  Dwfl_Module* module_ = nullptr;
+  GElf_Addr bias_ = 0;
+};
+
+/// Each file is opened once and each address looked up once, however many processes used them.
+class SymbolCache {
+ public:
+  /// Null: it has none.
+  const Symbol* Find(const ModuleDefinition& module, std::uint64_t offset, TraceHealth& health) {
+    Entry& entry = EntryOf(module);
+    const auto [at, is_new] = entry.symbols.try_emplace(offset);
+    if (is_new) {
+      at->second = entry.file.At(offset);
+      if (!at->second) health.Add(Defect::kUnnamedFunction, module.path);
+    }
+    return at->second ? &*at->second : nullptr;
+  }
+
+ private:
+  struct Entry {
+    SymbolFile file;
+    std::map<std::uint64_t, std::optional<Symbol>> symbols;
+  };
+
+  Entry& EntryOf(const ModuleDefinition& module) {
+    const std::pair<std::string, std::string> key(module.path, module.build_id);
+    if (const auto known = entries_.find(key); known != entries_.end()) return *known->second;
+    auto entry = std::make_unique<Entry>(Entry{SymbolFile(key.first, key.second), {}});
+    return *entries_.emplace(key, std::move(entry)).first->second;
+  }
+
+  std::map<std::pair<std::string, std::string>, std::unique_ptr<Entry>> entries_;
+};
+
+}  // namespace
+
+void NameCode(std::span<const std::unique_ptr<Stream>> streams, TraceHealth& health) {
+  SymbolCache cache;
+  for (const auto& stream : streams) {
+    if (stream->code.empty()) continue;
+    std::map<std::uint32_t, const ModuleDefinition*> modules;
+    for (const ModuleDefinition& m : stream->modules) modules.emplace(m.module, &m);
+    std::map<std::uint32_t, RegionDefinition*> regions;
+    for (RegionDefinition& r : stream->regions) regions.emplace(r.region, &r);
+    for (const CodeDefinition& c : stream->code) {
+      const auto module = modules.find(c.module);
+      const auto region = regions.find(c.region);
+      if (module == modules.end() || region == regions.end()) {
+        health.Add(Defect::kBadDefinition, stream->file_name);
+        continue;
+      }
+      const Symbol* symbol = cache.Find(*module->second, c.offset, health);
+      if (symbol == nullptr) continue;
+      region->second->linkage_name = stream->symbol_texts.emplace_back(symbol->linkage_name);
+      if (symbol->file.empty()) continue;
+      region->second->file = stream->symbol_texts.emplace_back(symbol->file);
+      region->second->line = symbol->line;
+    }
+  }
+}
+
+}  // namespace stipple
