@@ -43,11 +43,12 @@ std::uint64_t StackOf(const ucontext_t& context) {
   return static_cast<std::uint64_t>(context.uc_mcontext.gregs[REG_RSP]);
 }
 
+/// Also while recording is switched off: what is open goes on being left.
 template <class Record>
 void Append(Record record) {
   if (!stipple_recording()) return;
   record.ticks = ReadTicks();
-  stipple_append(&record, static_cast<std::uint8_t>(Record::kKind), sizeof record);
+  AppendRecord(&record, Record::kKind, sizeof record);
 }
 
 /// Learns whether the stack pointer in a jmp_buf is where glibc has it.

@@ -49,6 +49,7 @@ struct Process {
   int error;  // errno that stopped the recording
   std::uint32_t said_line;
   std::uint32_t said_counts;
+  std::uint32_t watched;    // a thread of ours watches for silent ones
   std::uint64_t stop_ms;    // after begin
   std::uint32_t unloading;  // calls of dlclose that are under way
   std::uint32_t reserved;

@@ -3,9 +3,10 @@
 # What only a long run shows, with tables instead of a golden text:
 #   a recursion a million frames deep is recorded, read and left at once by longjmp;
 #   a library that comes and goes a thousand times keeps its ids, and the archive grows by events only;
+#   threads that are silent for nine minutes keep their time;
 #   a debugger that stops in the slow path shows the program's frames.
 #
-#   long_runs.sh deep|dlopen|debugger STIPPLE WORK SOURCES COMPILER FLAGS...
+#   long_runs.sh deep|dlopen|silence|debugger STIPPLE WORK SOURCES COMPILER FLAGS...
 set -u
 what=$1 stipple=$2 work=$3 sources=$4
 shift 4
@@ -36,6 +37,16 @@ dlopen)
   # 6000 events and their chunks; three definitions more each time would be 200 KB.
   bytes=$(stat -c %s "$work"/app.stipple/*.stream)
   ((bytes < 160 * 1024)) || fail "$bytes bytes"
+  ;;
+silence)
+  "$@" -pthread "$sources/silent.c" -o "$work/app" || fail "does not compile"
+  "$stipple" run -o "$work/app.stipple" -- "$work/app" || fail "exit status $?"
+  "$stipple" check "$work/app.stipple" || fail "not sound"
+  for function in RestSeldom RestAfterBurst; do
+    "$stipple" stats "$work/app.stipple" --table profile --format csv |
+      awk -F, -v name=$function '$1 == name && $(NF - 1) > 529 { ++good } END { exit good != 1 }' ||
+      fail "$function did not take 530 s"
+  done
   ;;
 debugger)
   command -v gdb >/dev/null || { echo "SKIPPED: no gdb"; exit 77; }

@@ -7,9 +7,10 @@
 #include <unistd.h>
 
 __attribute__((noinline)) void Execute(const char* path) { execl(path, path, (char*)NULL); }
-__attribute__((noinline)) void Deep(int depth) {
+__attribute__((noinline)) int Deep(int depth) {
   if (depth == 0) _exit(3);
-  Deep(depth - 1);
+  volatile int here = depth; /* no tail call */
+  return Deep(depth - 1) + here;
 }
 __attribute__((noinline)) void Child(int how) {
   if (how == 0) Execute("/bin/true");
