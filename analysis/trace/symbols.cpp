@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -26,7 +27,9 @@ class SymbolFile {
  public:
   SymbolFile(const std::string& path, std::string_view build_id)
       : session_(dwfl_begin(&kCallbacks), &dwfl_end) {
-    if (!session_) return;
+    // The path is what the archive says: it may be that of something that blocks when opened.
+    std::error_code error;
+    if (!session_ || !std::filesystem::is_regular_file(path, error)) return;
     dwfl_report_begin(session_.get());
     module_ = dwfl_report_offline(session_.get(), "", path.c_str(), -1);
     dwfl_report_end(session_.get(), nullptr, nullptr);

@@ -21,7 +21,8 @@ static KEEP void goodbye(void) {
 
 int main(void) {
   atexit(goodbye);
-  printf("%d %d\n", twice(add, 4), factorial(3));
+  const int eight = twice(add, 4);
+  printf("%d %d\n", eight, factorial(3));
   fflush(stdout);
   if (fork() == 0) _exit(add(1, 2));
   wait(NULL);
