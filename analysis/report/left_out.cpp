@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <tuple>
 
 #include "analysis/stats/number.h"
 
@@ -77,8 +78,10 @@ FilterTotals FilterOf(const Trace& trace) {
   for (const Process& p : trace.processes()) {
     const FilterUse& use = p.stream->filter;
     if (!use.path.empty()) totals.path = use.path;
-    totals.functions += use.functions;
-    totals.filtered += use.filtered;
+    if (std::tie(use.filtered, use.functions) > std::tie(totals.filtered, totals.functions)) {
+      totals.functions = use.functions;
+      totals.filtered = use.filtered;
+    }
     totals.has_code = totals.has_code || !p.stream->code.empty();
   }
   return totals;

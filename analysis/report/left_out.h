@@ -22,7 +22,8 @@ Paused PausedOf(const Stream& stream);
 /// Of the process that was switched off for longest.
 Paused LongestPaused(const Trace& trace);
 
-/// The filter that the run was given, its functions summed over the processes. No path: none.
+/// The filter that the run was given and what it did in the process of which it left out most. No
+/// path: none.
 struct FilterTotals {
   std::string path;
   std::uint64_t functions = 0;

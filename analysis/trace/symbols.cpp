@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/trace/symbols.h"
 
+#include <elfutils/libdw.h>
 #include <elfutils/libdwfl.h>
 
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace stipple {
 namespace {
@@ -22,7 +27,9 @@ class SymbolFile {
  public:
   SymbolFile(const std::string& path, std::string_view build_id)
       : session_(dwfl_begin(&kCallbacks), &dwfl_end) {
-    if (!session_) return;
+    // The path is what the archive says: it may be that of something that blocks when opened.
+    std::error_code error;
+    if (!session_ || !std::filesystem::is_regular_file(path, error)) return;
     dwfl_report_begin(session_.get());
     module_ = dwfl_report_offline(session_.get(), "", path.c_str(), -1);
     dwfl_report_end(session_.get(), nullptr, nullptr);
@@ -32,7 +39,7 @@ class SymbolFile {
   }
 
   /// The function that begins at `offset`, counted as the file does.
-  std::optional<Symbol> At(std::uint64_t offset) const {
+  std::optional<Symbol> At(std::uint64_t offset) {
     if (module_ == nullptr) return std::nullopt;
     GElf_Off distance = 0;
     GElf_Sym symbol;
@@ -40,9 +47,10 @@ class SymbolFile {
                                             nullptr, nullptr);
     if (name == nullptr || distance != 0) return std::nullopt;
     Symbol found{name, "", 0};
-    if (Dwfl_Line* row = dwfl_module_getsrc(module_, offset + bias_)) {
+    if (Dwarf_Line* row = RowAt(offset + bias_)) {
       int line = 0;
-      if (const char* file = dwfl_lineinfo(row, nullptr, &line, nullptr, nullptr, nullptr)) {
+      const char* file = dwarf_linesrc(row, nullptr, nullptr);
+      if (file != nullptr && dwarf_lineno(row, &line) == 0) {
         found.file = file;
         found.line = static_cast<std::uint32_t>(line);
       }
@@ -59,11 +67,41 @@ class SymbolFile {
     return {reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(count)};
   }
 
+  /// A piece of code and the unit that it was compiled in.
+  struct Piece {
+    Dwarf_Addr begin, end;
+    Dwarf_Die* unit;
+    Dwarf_Addr bias;
+  };
+
+  // By its own index: elfutils' look-up by address needs a section that clang does not write.
+  Dwarf_Line* RowAt(Dwarf_Addr address) {
+    if (!indexed_) IndexUnits();
+    auto piece = std::ranges::upper_bound(pieces_, address, {}, &Piece::begin);
+    if (piece == pieces_.begin() || address >= (--piece)->end) return nullptr;
+    return dwarf_getsrc_die(piece->unit, address - piece->bias);
+  }
+
+  void IndexUnits() {
+    indexed_ = true;
+    Dwarf_Addr bias = 0;
+    for (Dwarf_Die* unit = nullptr; (unit = dwfl_module_nextcu(module_, unit, &bias)) != nullptr;) {
+      Dwarf_Addr base = 0;
+      Dwarf_Addr begin = 0;
+      Dwarf_Addr end = 0;
+      for (std::ptrdiff_t at = 0; (at = dwarf_ranges(unit, at, &base, &begin, &end)) > 0;)
+        pieces_.push_back({begin + bias, end + bias, unit, bias});
+    }
+    std::ranges::sort(pieces_, {}, &Piece::begin);
+  }
+
   static constexpr Dwfl_Callbacks kCallbacks = {nullptr, &dwfl_standard_find_debuginfo,
                                                 &dwfl_offline_section_address, nullptr};
   std::unique_ptr<Dwfl, decltype(&dwfl_end)> session_;
   Dwfl_Module* module_ = nullptr;
   GElf_Addr bias_ = 0;
+  bool indexed_ = false;
+  std::vector<Piece> pieces_;  // by begin
 };
 
 /// Each file is opened once and each address looked up once, however many processes used them.

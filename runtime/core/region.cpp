@@ -273,22 +273,24 @@ void FilterObject(const Object& object) {
   }
 }
 
-/// Says in the archive what the filter did, if there is one.
-void DefineFiltered(Process& process, const Object& object) {
+/// Says in the archive what the filter did to `functions` of an object, if there is one.
+void DefineFiltered(Process& process, std::uint32_t functions, std::uint32_t filtered) {
   const char* path = FilterPath();
   if (path == nullptr) return;
   Filtered record{};
-  record.functions = static_cast<std::uint32_t>(DescriptorCount(*object.dso));
-  for (std::uint32_t i = 0; i < record.functions; ++i)
-    record.filtered += object.regions[i] == kFiltered ? 1 : 0;
+  record.functions = functions;
+  record.filtered = filtered;
   record.path_bytes = static_cast<std::uint32_t>(TextBytes(path));
   Define(process, &record, Filtered::kKind, sizeof record, path, record.path_bytes);
 }
 
 /// Gives every function of a new object that is not filtered its region.
 void DefineObject(Process& process, const Object& object) {
-  DefineFiltered(process, object);
-  for (std::size_t i = 0; i < DescriptorCount(*object.dso); ++i) {
+  const std::size_t count = DescriptorCount(*object.dso);
+  std::uint32_t filtered = 0;
+  for (std::size_t i = 0; i < count; ++i) filtered += object.regions[i] == kFiltered ? 1 : 0;
+  DefineFiltered(process, static_cast<std::uint32_t>(count), filtered);
+  for (std::size_t i = 0; i < count; ++i) {
     stipple_descriptor& d = object.dso->begin[i];
     const char* name = TextAt(d.name);
     if (name == nullptr || object.regions[i] == kFiltered) continue;
@@ -303,6 +305,7 @@ void DefineObject(Process& process, const Object& object) {
 }  // namespace
 
 void DefineAll(Process& process) {
+  DefineFiltered(process, 0, 0);  // whether or not an object comes
   DefineModules(process);
   for (std::uint32_t id = 1; id <= regions.count(); ++id)
     if (!DefineRegionRecord(process, id)) return;

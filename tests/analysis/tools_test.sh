@@ -46,6 +46,16 @@ expect 127 "no program" "$stipple" run -o none.stipple -- ./none
 touch file
 expect 3 "no place" "$stipple" run -o file/x.stipple -- sh -c 'exit 3'; has err "nothing is recorded: file/x.stipple: Not a dir"
 
+# Filters are refused before anything runs.
+printf 'SCOREP_REGION_NAMES_BEGIN\n  EXCLUDE *\nOOPS_END\n' >unended
+printf '\n\nEXCLUDE main\n' >misplaced
+expect 2 "no filter" "$stipple" run -o none.stipple --filter ./none -- touch ran; has err "^./none: cannot be read: No such file"
+expect 2 "a folder as filter" "$stipple" run -o none.stipple --filter . -- touch ran; has err "^.: is a directory"
+expect 2 "unended filter" "$stipple" run -o none.stipple --filter unended -- touch ran; has err "^unended:4: 'SCOREP_REGION_NAMES_END' is missing"
+expect 2 "misplaced rule" "$stipple" run -o none.stipple --filter misplaced -- touch ran; has err "^misplaced:3: 'EXCLUDE' stands outside"
+[ -e ran ] && fail "the command ran all the same"
+[ -e none.stipple ] && fail "an archive was made all the same"
+
 flags=$("$stipple" flags g++ 2>/dev/null) || { echo "no plugin for g++: the rest is skipped"; exit "$failures"; }
 cat >app.cpp <<'END'
 #include <unistd.h>
@@ -87,5 +97,47 @@ expect 137 "killed" "$stipple" run -o killed.stipple -- ./app x
 expect 1 "check of the killed" "$stipple" check killed.stipple; has out "did not end in order"
 expect 0 "canonical of the killed" "$stipple" print --canonical killed.stipple
 [ "$(grep -c Fib out)" = 178 ] || fail "events of the killed run are missing"
+
+# What a filter leaves out is said, and so is that it left out nothing.
+printf 'SCOREP_REGION_NAMES_BEGIN EXCLUDE Fib(int) SCOREP_REGION_NAMES_END' >fib
+printf 'SCOREP_REGION_NAMES_BEGIN EXCLUDE nothing::* SCOREP_REGION_NAMES_END' >nothing
+expect 0 "filter" "$stipple" run -o filtered.stipple --filter fib -- ./app
+has err "recorded 2 events"; has err "the filter /.*/fib left out 1 of 2 functions"
+expect 0 "info of the filtered" "$stipple" info --json filtered.stipple
+has out '"filter":{"file":"/.*/fib","functions":2,"filtered":1}'; has out '"paused_s":0.0,"paused_times":0'
+expect 0 "idle filter" "$stipple" run --overwrite -o filtered.stipple --filter nothing -- ./app
+has err "recorded 180 events"; has err "the filter /.*/nothing excludes none of the 2 functions"
+
+# Paused: nothing is recorded until the signal, which `stipple run` and a shell around the program survive and pass on.
+expect 0 "paused" "$stipple" run -o paused.stipple --paused -- ./app
+has err "recorded 0 events"; has err "switched off 1 time"
+expect 0 "info of the paused" "$stipple" info paused.stipple; has out "^paused  .*, 1 time"
+cat >signalled.cpp <<'END'
+#include <csignal>
+#include <cstdlib>
+#include <sched.h>
+#include "stipple/user.h"
+__attribute__((noinline)) void While(bool on) {
+  bool (*recording)();
+  STIPPLE_RUNTIME_FUNCTION(stipple_recording, recording);
+  while (recording() == on) sched_yield();
+}
+volatile int sink;
+__attribute__((noipa)) int After(int x) { return sink = x; }
+int main(int, char** argv) {
+  const pid_t tool = std::atoi(argv[1]);
+  kill(tool, SIGUSR2);
+  While(false);
+  After(1);
+  kill(tool, SIGUSR2);
+  While(true);
+  return After(0);
+}
+END
+g++ -O2 $flags -fplugin-arg-stipple-instruction-threshold=1 -I"$2/../../runtime/include" signalled.cpp -o signalled || fail "compile"
+expect 0 "signals" sh -c 'exec "$0" run -o signalled.stipple --paused -- ./signalled $$' "$stipple"
+expect 0 "canonical of the signalled" "$stipple" print --canonical signalled.stipple
+has err "switched off 2 times"
+[ "$(grep -c "After(int)" out)" = 2 ] || { fail "not one visit of After"; cat out; }
 
 exit "$failures"

@@ -3,6 +3,7 @@
 // happens, what is left out is said.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <fstream>
 
 #include "run_writer.h"
@@ -56,10 +57,11 @@ int SwitchCount(const WalkedStream& stream) {
   return found == stream.definitions.end() ? 0 : found->second;
 }
 
-TEST(Switch, AMillionSwitchesLeaveEveryThreadBalanced) {
-  const auto streams = Record("storm 1000000");
+TEST(Switch, LeavesEveryThreadBalanced) {
+  const int kSwitches = std::getenv("STIPPLE_TEST_FULL") != nullptr ? 1000000 : 20000;
+  const auto streams = Record("storm " + std::to_string(kSwitches));
   ASSERT_EQ(streams.size(), 1u);
-  EXPECT_EQ(SwitchCount(streams[0]), 1000000);
+  EXPECT_EQ(SwitchCount(streams[0]), kSwitches);
   EXPECT_EQ(streams[0].threads.size(), 3u);
   for (const auto& [index, thread] : streams[0].threads) {
     EXPECT_GE(thread.Events().size(), 40u) << index;
@@ -143,9 +145,13 @@ TEST(Filter, LeavesOutWhatItExcludes) {
     EXPECT_EQ(EnterCount(streams[0], "inner"), row.inner) << row.rules;
     EXPECT_EQ(EnterCount(streams[0], "_ZN6solver4stepEi"), row.step) << row.rules;
     EXPECT_EQ(streams[0].regions.size(), 3u - row.filtered) << row.rules;
-    ASSERT_EQ(streams[0].filters.size(), 1u) << row.rules;
-    EXPECT_EQ(streams[0].filters[0].functions, 3u) << row.rules;
-    EXPECT_EQ(streams[0].filters[0].filtered, row.filtered) << row.rules;
+    std::uint32_t functions = 0, filtered = 0;
+    for (const stipple::Filtered& of_object : streams[0].filters) {
+      functions += of_object.functions;
+      filtered += of_object.filtered;
+    }
+    EXPECT_EQ(functions, 3u) << row.rules;
+    EXPECT_EQ(filtered, row.filtered) << row.rules;
   }
 }
 

@@ -66,7 +66,8 @@ static inline void stipple_start(void) {
 
 /* The same for the functions loaded now whose names match a pattern of a filter file, such as
  * "solver::*". A function is recorded while both it and the process are switched on. Functions of
- * -finstrument-functions have no names yet and match nothing but "*" and the like. */
+ * -finstrument-functions have no names yet and match nothing but "*" and the like. Not for signal
+ * handlers: making names readable takes the program's malloc. */
 static inline void stipple_stop_regions(const char* pattern) {
   void (*record)(const char*, int);
   STIPPLE_RUNTIME_FUNCTION(stipple_switch_regions, record);
