@@ -68,6 +68,31 @@ if command -v gfortran-12 >/dev/null; then
   STIPPLE_FC=gfortran-12 "$bin/stipple-fc" app.f90 -o fortran || fail "Fortran"
   instrumented fortran
 fi
+# The account of two files that share a header: each function once, however they are linked; never loaded.
+cat >both.h <<'END_OF_SOURCE'
+__attribute__((noinline)) inline int Shared(int n) { int s = 0; for (int i = 0; i < n; ++i) asm("" : "+r"(s)); return s; }
+__attribute__((noinline)) inline int Tiny(int n) { asm volatile(""); return n; }
+END_OF_SOURCE
+printf '#include "both.h"\n__attribute__((noinline)) int First(int n) { return Shared(n) + Tiny(n); }\n' >first.cpp
+printf '#include "both.h"\nint First(int n);\nint main(int c, char**) { return First(c) + Shared(c) + Tiny(c) > 0 ? 0 : 1; }\n' >second.cpp
+for compiler in g++-12 clang++-14; do
+  command -v $compiler >/dev/null || continue
+  for flags in -O2 -O0 "-O2 -flto" "-O2 -ffunction-sections -Wl,--gc-sections -s" "-O2 -shared -fPIC" "-O2 --stipple-instrument=source -flto"; do
+    STIPPLE_CXX=$compiler "$bin/stipple-c++" $flags first.cpp second.cpp -o both || fail "$compiler $flags"
+    "$bin/stipple" flags --explain both >out || fail "$compiler $flags: --explain"
+    case $compiler$flags in
+      g++*"-O2 -flto") expected='of [34] functions are instrumented; 1 left out: 1 trivial' ;;  # which inlines First
+      *) expected='^3 of 4 functions are instrumented; 1 left out: 1 trivial$' ;;
+    esac
+    grep -q "$expected" out || { cat out; fail "$compiler $flags: headline"; }
+    grep -qE '^  trivial  Tiny\(int\)  (\./)?both.h:2$' out || { cat out; fail "$compiler $flags: row of Tiny"; }
+    readelf -SW both | grep 'stipple_left_out' | grep -q ' 0000000000000000 .* MS ' || fail "$compiler $flags: it is loaded"
+  done
+done
+"$bin/stipple" flags --explain /bin/sh 2>errors && fail "a program without account is explained"
+grep -q 'does not say what was instrumented' errors || { cat errors; fail "no clear message"; }
+echo "stipple flags --explain knows what was left out"
+
 printf '#include <mpi.h>\nint main(int c, char** v) { MPI_Init(&c, &v); return MPI_Finalize(); }\n' >mpi.c
 "$bin/stipple-mpicc" mpi.c -o mpi || fail "mpicc"
 instrumented mpi
