@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 // stipple flags: what makes a compiler trace.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <regex>
+#include <sstream>
 
 #include "analysis/tools/command.h"
 #include "analysis/tools/left_out.h"
@@ -18,9 +21,37 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// The program file that would run, links resolved; empty if there is none.
+fs::path FileOf(const std::string& program) {
+  std::error_code error;
+  if (program.find('/') != std::string::npos) return fs::canonical(program, error);
+  const char* path = std::getenv("PATH");
+  std::istringstream directories(path == nullptr ? "" : path);
+  for (std::string directory; std::getline(directories, directory, ':');) {
+    const fs::path file = fs::path(directory.empty() ? "." : directory) / program;
+    if (access(file.c_str(), X_OK) == 0 && fs::is_regular_file(file, error))
+      return fs::canonical(file, error);
+  }
+  return {};
+}
+
+/// Folder of the plugin, from where distributions keep compilers: x86_64-linux-gnu-g++-12,
+/// llvm-14/bin/clang. Wrappers ask for every file they compile, and to run a compiler takes longer
+/// than all else; a plugin says so itself when it is not the compiler's. Empty: not to be seen.
+std::string FolderByName(const fs::path& file) {
+  static const std::regex gcc("(^|.*-)(gcc|g\\+\\+|gfortran)-([0-9]+)");
+  static const std::regex llvm(".*/llvm-([0-9]+)/bin/clang(\\+\\+)?(-[0-9]+)?");
+  std::smatch match;
+  const std::string name = file.filename();
+  if (std::regex_match(name, match, gcc)) return "gcc-" + match[3].str();
+  if (std::regex_match(file.native(), match, llvm)) return "llvm-" + match[1].str();
+  return {};
+}
+
 /// Folder of the compiler's plugin: "gcc-12", "llvm-14". Asks the compiler, so that a wrapper
 /// (mpicxx) answers for the one behind it.
 std::string FolderOf(const std::string& compiler) {
+  if (std::string folder = FolderByName(FileOf(compiler)); !folder.empty()) return folder;
   const std::optional<std::string> version = OutputOf({compiler, "--version"});
   if (!version)
     throw InputError("stipple flags", "'" + compiler + " --version' cannot be run: no compiler?");
@@ -29,12 +60,9 @@ std::string FolderOf(const std::string& compiler) {
   if (std::regex_search(*version, match, clang)) return fmt::format("llvm-{}", match[1].str());
   if (version->find("Free Software Foundation") == std::string::npos)
     throw InputError("stipple flags", "'" + compiler + "' is neither GCC nor clang");
-  for (const char* question : {"-dumpfullversion", "-dumpversion"}) {
-    const std::optional<std::string> full = OutputOf({compiler, question});
-    static const std::regex number("^([0-9]+)");
-    if (full && std::regex_search(*full, match, number))
-      return fmt::format("gcc-{}", match[1].str());
-  }
+  // "g++ (Debian 12.2.0-14) 12.2.0"
+  static const std::regex number("^[^\\n]* ([0-9]+)\\.[0-9.]+( [^\\n]*)?\\n");
+  if (std::regex_search(*version, match, number)) return fmt::format("gcc-{}", match[1].str());
   throw InputError("stipple flags", "'" + compiler + "' does not tell its version");
 }
 
@@ -51,6 +79,8 @@ std::vector<std::string> KnownFolders() {
 fs::path PluginOf(const std::string& compiler) {
   const std::string folder = FolderOf(compiler);
   fs::path plugin = fs::path(LibraryDirectory()) / folder / "stipple.so";
+  if (plugin.native().find_first_of(" \t") != std::string::npos)
+    throw InputError(LibraryDirectory(), "flags cannot name a path with a space in it");
   if (fs::exists(plugin)) return plugin;
   std::string known;
   for (const std::string& name : KnownFolders()) known.append(" ").append(name);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What the plugins wrote into object files about the functions they left out (docs/format.md, "The
-// account of the selection"), read back from objects, archives of objects, libraries and programs.
+// What the plugins wrote into object files about the functions they left out (docs/architecture.md,
+// "The account of the selection"), read back from objects, archives of objects, libraries and
+// programs.
 #ifndef STIPPLE_ANALYSIS_TOOLS_LEFT_OUT_H
 #define STIPPLE_ANALYSIS_TOOLS_LEFT_OUT_H
 

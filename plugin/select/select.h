@@ -77,7 +77,7 @@ class Selection {
   /// The account: what was left out and why, which functions got events, which list entries and
   /// filter rules matched. Texts without zero bytes, each once, in no order; empty if no function
   /// was seen. Each stands for itself, so that a linker may merge those of all files;
-  /// docs/format.md says how to read them.
+  /// docs/architecture.md says how to read them.
   const std::set<std::string>& Account();
 
  private:
