@@ -85,9 +85,28 @@ void CountSequence(function* fun, FunctionFacts& facts) {
   walk_gimple_seq(gimple_body(fun->decl), CountInSequence, nullptr, &info);
 }
 
+// The body of coroutine _Z4Pingv is called _Z4PingPZ4PingvE14_Z4Pingv.Frame.actor, which no
+// demangler knows; the coroutine's own name stands in it behind its length, that of ".Frame"
+// included.
+std::string_view CoroutineName(std::string_view name) {
+  constexpr std::string_view kFrame = ".Frame";
+  const std::size_t dot = name.rfind('.');
+  if (dot == name.npos || name.substr(dot) != ".actor" || dot < kFrame.size() ||
+      name.substr(dot - kFrame.size(), kFrame.size()) != kFrame)
+    return name;
+  for (std::size_t at = name.find("_Z", 1); at < dot; at = name.find("_Z", at + 1)) {
+    std::size_t digits = at;
+    while (digits > 0 && ISDIGIT(name[digits - 1])) --digits;
+    if (digits < at && std::size_t(atoi(&name[digits])) == dot - at)
+      return name.substr(at, dot - at - kFrame.size());
+  }
+  return name;
+}
+
 std::string LinkageName(tree decl) {
   const char* name = IDENTIFIER_POINTER(DECL_ASSEMBLER_NAME(decl));
-  return name[0] == '*' ? name + 1 : name;  // a star: given by an asm label, take it as it is
+  if (name[0] == '*') ++name;  // given by an asm label: take it as it is
+  return std::string(CoroutineName(name));
 }
 
 std::string Demangled(const std::string& linkage_name) {
@@ -108,8 +127,10 @@ FunctionFacts FactsOf(function* fun) {
   facts.file = region.file;
   facts.line = region.line;
   facts.in_system_header = DECL_IN_SYSTEM_HEADER(fun->decl);
-  // The `main` that gfortran puts around the main program.
-  facts.artificial = lang_GNU_Fortran() && facts.linkage_name == "main";
+  // The `main` that gfortran puts around the main program; the stub that has a coroutine's body
+  // destroy itself.
+  facts.artificial = (lang_GNU_Fortran() && facts.linkage_name == "main") ||
+                     std::string_view(facts.linkage_name).ends_with(".Frame.destroy");
   facts.wish = WishOf(fun->decl);
   if (fun->cfg != nullptr)
     CountGraph(fun, facts);

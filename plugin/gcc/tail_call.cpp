@@ -116,7 +116,8 @@ std::optional<Tail> TailOf(gcall* call) {
   return std::nullopt;
 }
 
-// Whether an exception of the call meets as many leaves, and nothing else on its way out.
+// Whether an exception of the call meets as many leaves (or none: exceptions=off), and nothing else
+// on its way out.
 bool ExceptionOnlyLeaves(function* fun, gimple* call, std::size_t leaves) {
   const int pad = lookup_stmt_eh_lp(call);
   if (pad <= 0) return pad == 0;
@@ -129,7 +130,7 @@ bool ExceptionOnlyLeaves(function* fun, gimple* call, std::size_t leaves) {
         return false;
     }
     if (met > leaves) return false;
-    if (EDGE_COUNT(block->succs) == 0) return met == leaves;
+    if (EDGE_COUNT(block->succs) == 0) return met == leaves || met == 0;
     block = single_succ_p(block) ? single_succ(block) : nullptr;
   }
   return false;

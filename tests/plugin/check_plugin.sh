@@ -11,16 +11,17 @@ cd "$work" || exit 2
 fail() { echo "FAILED: $*" >&2; exit 1; }
 
 compile() { # SOURCE OUTPUT [OPTION=VALUE...]
-  local source=$1 output=$2 flags=()
+  local source=$1 output=$2 flags=() gcc=gcc-12 clang=clang-14
   shift 2
+  [[ $source != *.cpp ]] || gcc=g++-12 clang=clang++-14
   if [[ $compiler == gcc ]]; then
     flags=(-fplugin="$plugin")
     for option; do flags+=("-fplugin-arg-stipple-$option"); done
-    gcc-12 -O2 ${more-} "${flags[@]}" "$source" -o "$output"
+    $gcc -O2 ${more-} "${flags[@]}" "$source" -o "$output"
   else
     flags=(-fplugin="$plugin" -fpass-plugin="$plugin" -Wno-unused-command-line-argument)
     for option; do flags+=(-mllvm "-stipple-$option"); done
-    clang-14 -O2 ${more-} "${flags[@]}" "$source" -o "$output"
+    $clang -O2 ${more-} "${flags[@]}" "$source" -o "$output"
   fi
 }
 
@@ -100,6 +101,26 @@ case $check in
     record "" ./app 20
     expect "enter Sink 10945" counts
     grep -q Fib counts && fail "Fib is instrumented"
+    for position in after-inlining source; do
+      more="-std=c++20 -DNEVER=__attribute__(($never))" \
+        compile "$apps/attributes.cpp" app instruction-threshold=1 instrument=$position
+      record "" ./app
+      expect "enter _Z6Tracedi 1" counts
+      grep -E 'Never|main.*EUl' counts && fail "instrumented in spite of the attribute"
+    done
+    ;;
+  tail-calls) # any number in the space of one, as without the plugin, in C++ and among coroutines
+    for more in "-std=c++20 -O2" "-std=c++20 -O3" "-std=c++20 -Os"; do
+      for position in after-inlining source; do
+        compile "$apps/tailcalls.cpp" app instruction-threshold=1 instrument=$position
+        [[ $(ulimit -s 8192; ./app 3000000 | head -3 | xargs) == "4500000 9000000 1500008" ]] ||
+          fail "tail calls take stack ($more $position)"
+        compile "$apps/symmetric.cpp" app instruction-threshold=1 instrument=$position
+        [[ $(ulimit -s 8192; ./app 1000000) == "left -1" ]] ||
+          fail "symmetric transfer takes stack ($more $position)"
+        record count bash -c 'ulimit -s 8192; exec ./app 100000'
+      done
+    done
     ;;
   static) # the runtime is not pulled in by its weak name; -u does it
     more="-static -g" compile "$apps/recursion.c" app instruction-threshold=1
