@@ -64,15 +64,15 @@ OwnedRegion RegionOf(function* fun);
 /// The parts of an event, each a statement that the inliner counts as one instruction. Tokens are
 /// 64-bit variables or SSA names.
 gimple* SlotStatement(function* fun, tree token);
-gimple* EnterStatement(tree token_out, tree token_in);
-gimple* LeaveStatement(tree token);
+gimple* EnterStatement(tree token_out, tree token_in, Form form);
+gimple* LeaveStatement(tree token, Form form);
 
 /// `copy` = `token`, in a way that the compiler cannot see through.
 gimple* OpaqueCopy(tree copy, tree token);
 
 /// Inserts the events at either position.
-void InstrumentGraph(function* fun);     // after inlining: SSA, exceptions lowered
-void InstrumentSequence(function* fun);  // as written: one GIMPLE_BIND
+void InstrumentGraph(function* fun, Form form);     // after inlining: SSA, exceptions lowered
+void InstrumentSequence(function* fun, Form form);  // as written: one GIMPLE_BIND
 
 }  // namespace stipple::plugin
 

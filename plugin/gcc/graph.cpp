@@ -36,7 +36,7 @@ basic_block InsertGuarded(basic_block from, tree token, gimple* event) {
   return block;
 }
 
-tree InsertEnter(function* fun) {
+tree InsertEnter(function* fun, Form form) {
   const tree slot = make_ssa_name(long_long_unsigned_type_node);
   const tree entered = make_ssa_name(long_long_unsigned_type_node);
   const tree token = make_ssa_name(long_long_unsigned_type_node);
@@ -45,7 +45,7 @@ tree InsertEnter(function* fun) {
   const basic_block join = split_edge(single_succ_edge(block));
   gimple_stmt_iterator at = gsi_start_bb(block);
   gsi_insert_after(&at, SlotStatement(fun, slot), GSI_NEW_STMT);
-  const basic_block event = InsertGuarded(block, slot, EnterStatement(entered, slot));
+  const basic_block event = InsertGuarded(block, slot, EnterStatement(entered, slot, form));
   gphi* phi = create_phi_node(token, join);
   add_phi_arg(phi, slot, find_edge(block, join), UNKNOWN_LOCATION);
   add_phi_arg(phi, entered, find_edge(event, join), UNKNOWN_LOCATION);
@@ -54,16 +54,16 @@ tree InsertEnter(function* fun) {
 
 // The test is of an opaque copy: knowing from the enter how it comes out, the compiler would make
 // two of the function.
-void InsertLeave(gimple* statement, tree token) {
+void InsertLeave(gimple* statement, tree token, Form form) {
   const tree copy = make_ssa_name(long_long_unsigned_type_node);
   gimple_stmt_iterator at = gsi_for_stmt(statement);
   gimple* opaque = OpaqueCopy(copy, token);
   gsi_insert_before(&at, opaque, GSI_SAME_STMT);
   const basic_block from = split_block(gimple_bb(statement), opaque)->src;
-  InsertGuarded(from, copy, LeaveStatement(copy));
+  InsertGuarded(from, copy, LeaveStatement(copy, form));
 }
 
-void InsertLeaveAtReturns(function* fun, tree token) {
+void InsertLeaveAtReturns(function* fun, tree token, Form form) {
   std::vector<gimple*> returns;
   edge exit;
   edge_iterator i;
@@ -71,7 +71,7 @@ void InsertLeaveAtReturns(function* fun, tree token) {
     gimple* last = last_stmt(exit->src);
     if (last != nullptr && gimple_code(last) == GIMPLE_RETURN) returns.push_back(last);
   }
-  for (gimple* statement : returns) InsertLeave(statement, token);
+  for (gimple* statement : returns) InsertLeave(statement, token, form);
 }
 
 bool Escapes(function* fun, gimple* statement) {
@@ -110,7 +110,7 @@ eh_landing_pad InsertLandingPad(function* fun, tree token) {
   if (current_loops != nullptr) add_bb_to_loop(block, current_loops->tree_root);
   gimple_stmt_iterator at = gsi_start_bb(block);
   gsi_insert_after(&at, gimple_build_label(pad->post_landing_pad), GSI_NEW_STMT);
-  gsi_insert_after(&at, LeaveStatement(token), GSI_NEW_STMT);
+  gsi_insert_after(&at, LeaveStatement(token, Form::kCall), GSI_NEW_STMT);
   gsi_insert_after(&at, gimple_build_resx(cleanup->index), GSI_NEW_STMT);
   return pad;
 }
@@ -133,11 +133,11 @@ void LeadToPad(gimple* statement, eh_landing_pad pad) {
 
 }  // namespace
 
-void InstrumentGraph(function* fun) {
+void InstrumentGraph(function* fun, Form form) {
   const std::vector<gimple*> escaping =
       flag_exceptions ? EscapingStatements(fun) : std::vector<gimple*>();
-  const tree token = InsertEnter(fun);
-  InsertLeaveAtReturns(fun, token);
+  const tree token = InsertEnter(fun, form);
+  InsertLeaveAtReturns(fun, token, form);
   if (!escaping.empty()) {
     const eh_landing_pad pad = InsertLandingPad(fun, token);
     for (gimple* statement : escaping) LeadToPad(statement, pad);

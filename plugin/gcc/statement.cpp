@@ -29,7 +29,7 @@ gimple* Statement(const std::string& code, tree out, tree in, bool clobbers_regi
   if (out != NULL_TREE) vec_safe_push(outputs, Operand("=&r", out));
   if (in != NULL_TREE) vec_safe_push(inputs, Operand(out == NULL_TREE ? "r" : "0", in));
   if (clobbers_registers) {
-    for (const char* name : {"rax", "rdx", "r11", "cc"})
+    for (const char* name : {"rax", "rdx", "r10", "r11", "cc"})
       vec_safe_push(clobbers, build_tree_list(NULL_TREE, Text(name)));
   }
   gasm* statement =
@@ -47,11 +47,13 @@ gimple* SlotStatement(function* fun, tree token) {
   return Statement(SlotCode(RegionOf(fun).text(), kSyntax), token, NULL_TREE, false);
 }
 
-gimple* EnterStatement(tree token_out, tree token_in) {
-  return Statement(EnterCode(kSyntax), token_out, token_in, true);
+gimple* EnterStatement(tree token_out, tree token_in, Form form) {
+  return Statement(EnterCode(kSyntax, form), token_out, token_in, true);
 }
 
-gimple* LeaveStatement(tree token) { return Statement(LeaveCode(kSyntax), NULL_TREE, token, true); }
+gimple* LeaveStatement(tree token, Form form) {
+  return Statement(LeaveCode(kSyntax, form), NULL_TREE, token, true);
+}
 
 gimple* OpaqueCopy(tree copy, tree token) { return Statement("", copy, token, false); }
 

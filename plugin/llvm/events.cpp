@@ -23,7 +23,7 @@ constexpr TemplateSyntax kSyntax = {
     .token64 = "${0:q}",
     .unique = "${:uid}",
 };
-constexpr char kClobbers[] = "~{rax},~{rdx},~{r11},~{dirflag},~{fpsr},~{flags}";
+constexpr char kClobbers[] = "~{rax},~{rdx},~{r10},~{r11},~{dirflag},~{fpsr},~{flags}";
 
 /// One asm statement. `token`: null if the code only gives one, `gives_token`: it gives one.
 llvm::CallInst* InsertCode(llvm::IRBuilder<>& builder, const std::string& code, llvm::Value* token,
@@ -69,7 +69,7 @@ llvm::Instruction* EntryPlace(llvm::Function& function) {
   return place;
 }
 
-llvm::Value* InsertEnter(llvm::Function& function) {
+llvm::Value* InsertEnter(llvm::Function& function, Form form) {
   llvm::Instruction* place = EntryPlace(function);
   llvm::IRBuilder<> builder(place);
   llvm::CallInst* slot =
@@ -77,7 +77,7 @@ llvm::Value* InsertEnter(llvm::Function& function) {
   llvm::Instruction* guarded = Guarded(place, slot);
   builder.SetInsertPoint(guarded);
   llvm::CallInst* entered =
-      InsertCode(builder, EnterCode(kSyntax), slot, true, std::string("=&r,0,") + kClobbers);
+      InsertCode(builder, EnterCode(kSyntax, form), slot, true, std::string("=&r,0,") + kClobbers);
   builder.SetInsertPoint(place);
   llvm::PHINode* token = builder.CreatePHI(builder.getInt64Ty(), 2);
   token->addIncoming(slot, slot->getParent());
@@ -85,9 +85,9 @@ llvm::Value* InsertEnter(llvm::Function& function) {
   return token;
 }
 
-void InsertLeave(llvm::Instruction* exit, llvm::Value* token) {
+void InsertLeave(llvm::Instruction* exit, llvm::Value* token, Form form) {
   llvm::IRBuilder<> builder(Guarded(exit, token));
-  InsertCode(builder, LeaveCode(kSyntax), token, false, std::string("r,") + kClobbers);
+  InsertCode(builder, LeaveCode(kSyntax, form), token, false, std::string("r,") + kClobbers);
 }
 
 // A function with events writes memory, whatever was known of it.
@@ -119,16 +119,16 @@ bool GivesExceptionsBack(const llvm::Function& function) {
 
 }  // namespace
 
-void Instrument(llvm::Function& function) {
+void Instrument(llvm::Function& function, Form form) {
   ForgetPurity(function);
   if (GivesExceptionsBack(function)) EnterPadsForEveryException(function);
 
-  llvm::Value* token = InsertEnter(function);
+  llvm::Value* token = InsertEnter(function, form);
 
   llvm::SmallVector<llvm::Instruction*, 4> exits;
   llvm::EscapeEnumerator enumerator(function, "stipple_leave", /*HandleExceptions=*/true);
   while (llvm::IRBuilder<>* exit = enumerator.Next()) exits.push_back(&*exit->GetInsertPoint());
-  for (llvm::Instruction* exit : exits) InsertLeave(exit, token);
+  for (llvm::Instruction* exit : exits) InsertLeave(exit, token, form);
 }
 
 }  // namespace stipple::plugin

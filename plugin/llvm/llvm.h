@@ -24,7 +24,7 @@ struct OwnedRegion {
 OwnedRegion RegionOf(const llvm::Function& function);
 
 /// Inserts enter, and leave at each exit: return, exception, and before a musttail call.
-void Instrument(llvm::Function& function);
+void Instrument(llvm::Function& function, Form form);
 
 }  // namespace stipple::plugin
 

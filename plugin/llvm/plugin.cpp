@@ -54,12 +54,14 @@ class EventPass : public llvm::PassInfoMixin<EventPass> {
       return llvm::PreservedAnalyses::all();
     bool changed = false;
     for (llvm::Function& function : module) {
-      if (!CanHoldEvents(function) || !Select(FactsOf(function), options).instrument) continue;
-      Instrument(function);
+      if (!CanHoldEvents(function)) continue;
+      const FunctionFacts facts = FactsOf(function);
+      if (!Select(facts, options).instrument) continue;
+      Instrument(function, facts.makes_calls ? Form::kCall : Form::kInline);
       changed = true;
     }
     if (!changed) return llvm::PreservedAnalyses::all();
-    module.appendModuleInlineAsm({ObjectCode().data(), ObjectCode().size()});
+    module.appendModuleInlineAsm(ObjectCode());
     return llvm::PreservedAnalyses::none();
   }
 
