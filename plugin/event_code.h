@@ -27,19 +27,24 @@ struct RegionText {
   unsigned line;  // 0: unknown
 };
 
+/// Where an event's code stands: in the function, which then needs no call for it, or in a routine
+/// of the shared object that the function calls, which is the shorter way for one that calls others
+/// anyway.
+enum class Form { kInline, kCall };
+
 /// The region's descriptor, and the load of its slot: operand 0, an output, is the token.
 std::string SlotCode(const RegionText& region, const TemplateSyntax& syntax);
 
 /// Appends an enter event unless the token is 0. Operand 0 is the token, in and (early-clobbered)
-/// out: what comes out is for the exits. Clobbers rax, rdx, r11 and the flags.
-std::string EnterCode(const TemplateSyntax& syntax);
+/// out: what comes out is for the exits. Clobbers rax, rdx, r11, the flags and, with a call, r10.
+std::string EnterCode(const TemplateSyntax& syntax, Form form);
 
 /// Appends a leave event unless the token is 0. Operand 0 is the token, an input. Same clobbers.
-std::string LeaveCode(const TemplateSyntax& syntax);
+std::string LeaveCode(const TemplateSyntax& syntax, Form form);
 
-/// The block of the shared object with its constructor and destructor, for file scope (AT&T syntax,
-/// not a template). May occur any number of times in a file and in a shared object.
-std::string_view ObjectCode();
+/// The block of the shared object, its constructor and destructor and the routines, for file scope
+/// (AT&T syntax, not a template). May occur any number of times in a file and in a shared object.
+const std::string& ObjectCode();
 
 /// The account of the selection as a section that is not loaded, for file scope (not a template).
 std::string AccountCode(const std::set<std::string>& account);

@@ -81,8 +81,8 @@ OwnedRegion RegionOf(function* fun);
 /// The parts of an event, each a statement that the inliner counts as one instruction. Tokens are
 /// 64-bit variables or SSA names.
 gimple* SlotStatement(function* fun, tree token);
-gimple* EnterStatement(tree token_out, tree token_in);
-gimple* LeaveStatement(tree token);
+gimple* EnterStatement(tree token_out, tree token_in, Form form);
+gimple* LeaveStatement(tree token, Form form);
 
 /// Whether the statement is one of those, and the token that goes into it.
 bool IsEnter(gimple* statement);
@@ -96,8 +96,8 @@ gimple* OpaqueCopy(tree copy, tree token);
 void ForgetGraph(function* fun);
 
 /// Inserts the events at either position.
-void InstrumentGraph(function* fun);     // after inlining: SSA, exceptions lowered
-void InstrumentSequence(function* fun);  // as written: one GIMPLE_BIND
+void InstrumentGraph(function* fun, Form form);     // after inlining: SSA, exceptions lowered
+void InstrumentSequence(function* fun, Form form);  // as written: one GIMPLE_BIND
 
 /// Puts the leaves that only a return separates from a call that GCC will make a jump before that
 /// call, which without them is one. Returns whether the graph changed. Runs just before pass `tailc`.

@@ -17,23 +17,23 @@ namespace stipple::plugin {
 namespace {
 
 // On an edge of its own: the first block may be the head of a loop.
-tree InsertEnter(function* fun) {
+tree InsertEnter(function* fun, Form form) {
   const tree slot = make_ssa_name(long_long_unsigned_type_node);
   const tree token = make_ssa_name(long_long_unsigned_type_node);
   const basic_block block = split_edge(single_succ_edge(ENTRY_BLOCK_PTR_FOR_FN(fun)));
   gimple_stmt_iterator at = gsi_start_bb(block);
   gsi_insert_after(&at, SlotStatement(fun, slot), GSI_NEW_STMT);
-  gsi_insert_after(&at, EnterStatement(token, slot), GSI_NEW_STMT);
+  gsi_insert_after(&at, EnterStatement(token, slot, form), GSI_NEW_STMT);
   return token;
 }
 
-void InsertLeaveAtReturns(function* fun, tree token) {
+void InsertLeaveAtReturns(function* fun, tree token, Form form) {
   edge exit;
   edge_iterator i;
   FOR_EACH_EDGE(exit, i, EXIT_BLOCK_PTR_FOR_FN(fun)->preds) {
     gimple_stmt_iterator last = gsi_last_bb(exit->src);
     if (!gsi_end_p(last) && gimple_code(gsi_stmt(last)) == GIMPLE_RETURN)
-      gsi_insert_before(&last, LeaveStatement(token), GSI_SAME_STMT);
+      gsi_insert_before(&last, LeaveStatement(token, form), GSI_SAME_STMT);
   }
 }
 
@@ -73,7 +73,7 @@ eh_landing_pad InsertLandingPad(function* fun, tree token) {
   if (current_loops != nullptr) add_bb_to_loop(block, current_loops->tree_root);
   gimple_stmt_iterator at = gsi_start_bb(block);
   gsi_insert_after(&at, gimple_build_label(pad->post_landing_pad), GSI_NEW_STMT);
-  gsi_insert_after(&at, LeaveStatement(token), GSI_NEW_STMT);
+  gsi_insert_after(&at, LeaveStatement(token, Form::kCall), GSI_NEW_STMT);
   gsi_insert_after(&at, gimple_build_resx(cleanup->index), GSI_NEW_STMT);
   return pad;
 }
@@ -96,11 +96,11 @@ void LeadToPad(gimple* statement, eh_landing_pad pad) {
 
 }  // namespace
 
-void InstrumentGraph(function* fun) {
+void InstrumentGraph(function* fun, Form form) {
   const std::vector<gimple*> escaping =
       flag_exceptions && options.exceptions ? EscapingStatements(fun) : std::vector<gimple*>();
-  const tree token = InsertEnter(fun);
-  InsertLeaveAtReturns(fun, token);
+  const tree token = InsertEnter(fun, form);
+  InsertLeaveAtReturns(fun, token, form);
   if (!escaping.empty()) {
     const eh_landing_pad pad = InsertLandingPad(fun, token);
     for (gimple* statement : escaping) LeadToPad(statement, pad);

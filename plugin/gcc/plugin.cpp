@@ -43,13 +43,16 @@ class EventPass : public gimple_opt_pass {
   bool gate(function*) override { return options.position == position; }
 
   unsigned int execute(function* fun) override {
-    if (!CanHoldEvents(fun) || !selection.Select(FactsOf(fun)).instrument) return 0;
+    if (!CanHoldEvents(fun)) return 0;
+    const FunctionFacts facts = FactsOf(fun);
+    if (!selection.Select(facts).instrument) return 0;
+    const Form form = facts.makes_calls ? Form::kCall : Form::kInline;
     if (position == Position::kSource) {
-      InstrumentSequence(fun);
+      InstrumentSequence(fun, form);
       AddObjectCode();
       return 0;
     }
-    InstrumentGraph(fun);
+    InstrumentGraph(fun, form);
     object_code_needed = true;
     return TODO_update_ssa | TODO_cleanup_cfg;
   }

@@ -17,21 +17,21 @@ constexpr TemplateSyntax kSyntax = {
     .unique = "%=",
 };
 
-const std::string& EnterText() {
-  static const std::string text = EnterCode(kSyntax);
-  return text;
-}
+using TextOf = std::string (*)(const TemplateSyntax&, Form);
 
-const std::string& LeaveText() {
-  static const std::string text = LeaveCode(kSyntax);
-  return text;
+template <TextOf code>
+const std::string& EventText(Form form) {
+  static const std::string texts[] = {code(kSyntax, Form::kInline), code(kSyntax, Form::kCall)};
+  return texts[static_cast<int>(form)];
 }
 
 // By content: with link-time optimisation another process made the statement.
-bool HasText(gimple* statement, const std::string& text) {
+template <TextOf code>
+bool Is(gimple* statement) {
   const auto* assembly = dyn_cast<gasm*>(statement);
-  return assembly != nullptr && gimple_asm_volatile_p(assembly) &&
-         text == gimple_asm_string(assembly);
+  if (assembly == nullptr || !gimple_asm_volatile_p(assembly)) return false;
+  return EventText<code>(Form::kInline) == gimple_asm_string(assembly) ||
+         EventText<code>(Form::kCall) == gimple_asm_string(assembly);
 }
 
 tree Text(std::string_view text) { return build_string(unsigned(text.size()), text.data()); }
@@ -46,7 +46,7 @@ gimple* Statement(const std::string& code, tree out, tree in, bool clobbers_regi
   if (out != NULL_TREE) vec_safe_push(outputs, Operand("=&r", out));
   if (in != NULL_TREE) vec_safe_push(inputs, Operand(out == NULL_TREE ? "r" : "0", in));
   if (clobbers_registers) {
-    for (const char* name : {"rax", "rdx", "r11", "cc"})
+    for (const char* name : {"rax", "rdx", "r10", "r11", "cc"})
       vec_safe_push(clobbers, build_tree_list(NULL_TREE, Text(name)));
   }
   gasm* statement =
@@ -64,15 +64,17 @@ gimple* SlotStatement(function* fun, tree token) {
   return Statement(SlotCode(RegionOf(fun).text(), kSyntax), token, NULL_TREE, false);
 }
 
-gimple* EnterStatement(tree token_out, tree token_in) {
-  return Statement(EnterText(), token_out, token_in, true);
+gimple* EnterStatement(tree token_out, tree token_in, Form form) {
+  return Statement(EventText<EnterCode>(form), token_out, token_in, true);
 }
 
-gimple* LeaveStatement(tree token) { return Statement(LeaveText(), NULL_TREE, token, true); }
+gimple* LeaveStatement(tree token, Form form) {
+  return Statement(EventText<LeaveCode>(form), NULL_TREE, token, true);
+}
 
-bool IsEnter(gimple* statement) { return HasText(statement, EnterText()); }
+bool IsEnter(gimple* statement) { return Is<EnterCode>(statement); }
 
-bool IsLeave(gimple* statement) { return HasText(statement, LeaveText()); }
+bool IsLeave(gimple* statement) { return Is<LeaveCode>(statement); }
 
 tree TokenIn(gimple* event) { return TREE_VALUE(gimple_asm_input_op(as_a<gasm*>(event), 0)); }
 

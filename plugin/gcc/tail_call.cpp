@@ -249,7 +249,8 @@ basic_block ReturnOf(function* fun, gcall* call, const Tail& tail) {
 
 void Move(function* fun, gcall* call, const Tail& tail) {
   gimple_stmt_iterator at = gsi_for_stmt(call);
-  for (const tree token : tail.tokens) gsi_insert_before(&at, LeaveStatement(token), GSI_SAME_STMT);
+  for (const tree token : tail.tokens)
+    gsi_insert_before(&at, LeaveStatement(token, Form::kCall), GSI_SAME_STMT);
   const basic_block block = gimple_bb(call);
   if (remove_stmt_from_eh_lp(call)) gimple_purge_dead_eh_edges(block);
   if (gsi_stmt(gsi_last_bb(block)) != call) split_block(block, call);

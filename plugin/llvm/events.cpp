@@ -26,8 +26,8 @@ constexpr TemplateSyntax kSyntax = {
     .token64 = "${0:q}",
     .unique = "${:uid}",
 };
-constexpr char kEnterConstraints[] = "=&r,0,~{rax},~{rdx},~{r11},~{dirflag},~{fpsr},~{flags}";
-constexpr char kLeaveConstraints[] = "r,~{rax},~{rdx},~{r11},~{dirflag},~{fpsr},~{flags}";
+constexpr char kEnterConstraints[] = "=&r,0,~{rax},~{rdx},~{r10},~{r11},~{dirflag},~{fpsr},~{flags}";
+constexpr char kLeaveConstraints[] = "r,~{rax},~{rdx},~{r10},~{r11},~{dirflag},~{fpsr},~{flags}";
 
 /// An asm statement that takes a token, gives one, or both.
 llvm::InlineAsm* Code(llvm::LLVMContext& context, const std::string& text, bool takes_token,
@@ -41,12 +41,12 @@ llvm::InlineAsm* Code(llvm::LLVMContext& context, const std::string& text, bool 
 }
 
 // LLVM keeps one object per text, so that an event is known by it.
-llvm::InlineAsm* Enter(llvm::LLVMContext& context) {
-  return Code(context, EnterCode(kSyntax), true, true, kEnterConstraints);
+llvm::InlineAsm* Enter(llvm::LLVMContext& context, Form form) {
+  return Code(context, EnterCode(kSyntax, form), true, true, kEnterConstraints);
 }
 
-llvm::InlineAsm* Leave(llvm::LLVMContext& context) {
-  return Code(context, LeaveCode(kSyntax), true, false, kLeaveConstraints);
+llvm::InlineAsm* Leave(llvm::LLVMContext& context, Form form) {
+  return Code(context, LeaveCode(kSyntax, form), true, false, kLeaveConstraints);
 }
 
 llvm::CallInst* InsertCode(llvm::Instruction* place, llvm::InlineAsm* code,
@@ -146,26 +146,35 @@ void Guard(llvm::CallInst& event) {
   result->addIncoming(&event, event.getParent());
 }
 
+bool IsEnter(const llvm::CallInst& call) {
+  if (!call.isInlineAsm()) return false;
+  llvm::LLVMContext& context = call.getContext();
+  return call.getCalledOperand() == Enter(context, Form::kInline) ||
+         call.getCalledOperand() == Enter(context, Form::kCall);
+}
+
 }  // namespace
 
 bool IsLeave(const llvm::Instruction& instruction) {
   const auto* call = llvm::dyn_cast<llvm::CallInst>(&instruction);
-  return call != nullptr && call->isInlineAsm() &&
-         call->getCalledOperand() == Leave(instruction.getContext());
+  if (call == nullptr || !call->isInlineAsm()) return false;
+  llvm::LLVMContext& context = instruction.getContext();
+  return call->getCalledOperand() == Leave(context, Form::kInline) ||
+         call->getCalledOperand() == Leave(context, Form::kCall);
 }
 
-llvm::Value* InsertEvents(llvm::Function& function) {
+llvm::Value* InsertEvents(llvm::Function& function, Form form) {
   ForgetPurity(function);
   llvm::LLVMContext& context = function.getContext();
   llvm::Instruction* place = EntryPlace(function);
   const std::string slot_code = SlotCode(RegionOf(function).text(), kSyntax);
   llvm::Value* slot = InsertCode(place, Code(context, slot_code, false, true, "=&r"), {});
-  llvm::Value* token = InsertCode(place, Enter(context), slot);
+  llvm::Value* token = InsertCode(place, Enter(context, form), slot);
   for (llvm::BasicBlock& block : function) {
     llvm::Instruction* exit = block.getTerminator();
     if (!llvm::isa<llvm::ReturnInst>(exit)) continue;
     if (llvm::CallInst* call = block.getTerminatingMustTailCall()) exit = call;
-    InsertCode(exit, Leave(context), token);
+    InsertCode(exit, Leave(context, form), token);
   }
   return token;
 }
@@ -194,7 +203,7 @@ void InsertLeaveForExceptions(llvm::Function& function, llvm::Value* token,
   llvm::PHINode* exception =
       builder.CreatePHI(ExceptionType(context), static_cast<unsigned>(exits.size() + 1));
   llvm::Instruction* resume = builder.CreateResume(exception);
-  InsertCode(resume, Leave(context), token);
+  InsertCode(resume, Leave(context, Form::kCall), token);
   for (llvm::ResumeInst* exit : exits) {
     exception->addIncoming(exit->getValue(), exit->getParent());
     llvm::BranchInst::Create(last, exit);
@@ -207,15 +216,11 @@ void InsertLeaveForExceptions(llvm::Function& function, llvm::Value* token,
 }
 
 void GuardEvents(llvm::Function& function) {
-  const llvm::Value* enter = Enter(function.getContext());
-  const llvm::Value* leave = Leave(function.getContext());
   llvm::SmallVector<llvm::CallInst*, 16> events;
   for (llvm::BasicBlock& block : function)
     for (llvm::Instruction& instruction : block) {
       auto* call = llvm::dyn_cast<llvm::CallInst>(&instruction);
-      if (call == nullptr || !call->isInlineAsm()) continue;
-      if (call->getCalledOperand() == enter || call->getCalledOperand() == leave)
-        events.push_back(call);
+      if (call != nullptr && (IsEnter(*call) || IsLeave(*call))) events.push_back(call);
     }
   if (events.empty()) return;
   EntryPlace(function);

@@ -29,7 +29,7 @@ OwnedRegion RegionOf(const llvm::Function& function);
 using TailCalls = llvm::SmallPtrSet<const llvm::CallInst*, 4>;
 
 /// Inserts enter, and leave at each return and before each musttail call. The answer is the token.
-llvm::Value* InsertEvents(llvm::Function& function);
+llvm::Value* InsertEvents(llvm::Function& function, Form form);
 
 /// Inserts a leave where an exception leaves the function, unless by one of `tail_calls`.
 void InsertLeaveForExceptions(llvm::Function& function, llvm::Value* token,

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Where LLVM meets us: the options, the two positions, the object block.
+#include <optional>
+
 #include "llvm/IR/DiagnosticInfo.h"
 #include "llvm/IR/Module.h"
 #include "llvm/Passes/PassBuilder.h"
@@ -54,6 +56,14 @@ void AddAccount(Selection& selection, llvm::Module& module) {
   if (!selection.Account().empty()) module.appendModuleInlineAsm(AccountCode(selection.Account()));
 }
 
+/// How the function's events are written; none: it gets none.
+std::optional<Form> FormOf(llvm::Function& function, Selection& selection) {
+  if (!CanHoldEvents(function)) return std::nullopt;
+  const FunctionFacts facts = FactsOf(function);
+  if (!selection.Select(facts).instrument) return std::nullopt;
+  return facts.makes_calls ? Form::kCall : Form::kInline;
+}
+
 // Both positions come here; as written (`instrument=source`) the early one inserts and the late one
 // finishes. -O0 makes no call a jump.
 class EventPass : public llvm::PassInfoMixin<EventPass> {
@@ -82,8 +92,8 @@ class EventPass : public llvm::PassInfoMixin<EventPass> {
       TailCalls tail_calls;
       if (!inserts) {
         if (preserve_tail_calls) LeaveBeforeTailCalls(function);
-      } else if (CanHoldEvents(function) && selection.Select(FactsOf(function)).instrument) {
-        llvm::Value* token = InsertEvents(function);
+      } else if (const std::optional<Form> form = FormOf(function, selection)) {
+        llvm::Value* token = InsertEvents(function, *form);
         if (late && preserve_tail_calls) tail_calls = LeaveBeforeTailCalls(function);
         if (options.exceptions) InsertLeaveForExceptions(function, token, tail_calls);
         changed = true;
@@ -91,7 +101,7 @@ class EventPass : public llvm::PassInfoMixin<EventPass> {
       if (late) GuardEvents(function);
     }
     if (inserts) AddAccount(selection, module);
-    if (changed) module.appendModuleInlineAsm({ObjectCode().data(), ObjectCode().size()});
+    if (changed) module.appendModuleInlineAsm(ObjectCode());
     return llvm::PreservedAnalyses::none();
   }
 

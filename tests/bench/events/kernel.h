@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What the runner calls in each variant of a kernel. Built four times per compiler: plain, with the
- * plugin (twice: left off, recording) and, with BENCH_FLOOR, with the cheapest event that could be
+/* What the runner calls in each variant of a kernel. Built five times per compiler: plain, with the
+ * plugin (three times: no runtime, filtered, recording) and, with BENCH_FLOOR, with the cheapest event that could be
  * written by hand: read the clock, store 8 bytes. */
 #ifndef STIPPLE_TESTS_BENCH_EVENTS_KERNEL_H
 #define STIPPLE_TESTS_BENCH_EVENTS_KERNEL_H

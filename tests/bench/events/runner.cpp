@@ -24,8 +24,14 @@ constexpr std::uint64_t kCalls = 12000;
 
 alignas(65536) std::uint64_t ring[kRingWords];
 std::uint64_t rings_filled = 0;
-bool recording = false;  // what stipple_register answers
-std::uint64_t clock_mask = 0;
+
+/// What stipple_register does with an object.
+enum class Answer {
+  kAbsent,    // nothing, as if there were none
+  kFiltered,  // lets it record, but not these functions: their slots are 0
+  kRecord,
+};
+Answer answer = Answer::kAbsent;
 stipple_control ring_control{};
 __thread stipple_control* control __attribute__((tls_model("initial-exec"))) = &ring_control;
 
@@ -46,7 +52,6 @@ extern "C" __attribute__((visibility("hidden"))) std::uint32_t test_slow_event(
   if (ring_control.end != 0) ++rings_filled;
   ring_control.cur = reinterpret_cast<std::uint64_t>(ring);
   ring_control.end = ring_control.cur + sizeof(ring);
-  ring_control.clock_mask = clock_mask;
   *reinterpret_cast<std::uint64_t*>(ring_control.cur) = (__rdtsc() << 24) | token;
   ring_control.cur += 8;
   return token & ~std::uint32_t{STIPPLE_LEAVE};
@@ -55,20 +60,22 @@ extern "C" __attribute__((visibility("hidden"))) std::uint32_t test_slow_event(
 extern "C" void test_slow_path();
 
 extern "C" __attribute__((visibility("default"))) void stipple_register(stipple_dso* dso) {
-  if (!recording) return;
+  if (answer == Answer::kAbsent) return;
   dso->slow = test_slow_path;
   dso->tp_offset =
       reinterpret_cast<char*>(&control) - static_cast<char*>(__builtin_thread_pointer());
   std::uint32_t id = 1;
   for (stipple_descriptor* d = dso->begin; d != dso->end; ++d) d->id = id++;
+  if (answer == Answer::kRecord) return;
+  // Filtered, or stopped in mid-run: either way the runtime writes 0 into the slots.
+  for (stipple_descriptor* d = dso->begin; d != dso->end; ++d) d->id = 0;
 }
 extern "C" __attribute__((visibility("default"))) void stipple_unregister(stipple_dso*) {}
 
 namespace {
 
-Kernel Load(const std::string& file, bool record, std::uint64_t mask) {
-  recording = record;
-  clock_mask = mask;
+Kernel Load(const std::string& file, Answer to) {
+  answer = to;
   return stipple_bench::LoadKernel(file);
 }
 
@@ -94,11 +101,13 @@ double EventsPerCall(Kernel recorded) {
 
 void Measure(const std::string& kernel, const std::string& compiler, int rounds) {
   const std::string start = BENCH_EVENTS_DIR "/" + kernel + "_" + compiler + "_";
-  Variant variants[] = {{"plain", Load(start + "plain.so", false, 0), {}},
-                        {"off", Load(start + "off.so", false, 0), {}},
-                        {"floor", Load(start + "floor.so", false, 0), {}},
-                        {"exact", Load(start + "exact.so", true, 0), {}}};
-  const double events = EventsPerCall(variants[3].kernel);
+  Variant variants[] = {{"plain", Load(start + "plain.so", Answer::kAbsent), {}},
+                        {"off", Load(start + "off.so", Answer::kAbsent), {}},
+                        {"filtered", Load(start + "filtered.so", Answer::kFiltered), {}},
+                        {"floor", Load(start + "floor.so", Answer::kAbsent), {}},
+                        {"exact", Load(start + "exact.so", Answer::kRecord), {}}};
+  constexpr int kFloor = 3, kExact = 4;
+  const double events = EventsPerCall(variants[kExact].kernel);
   for (int round = 0; round < rounds; ++round)
     for (Variant& v : variants) v.ns.push_back(NsPerCall(v.kernel));
 
@@ -106,9 +115,9 @@ void Measure(const std::string& kernel, const std::string& compiler, int rounds)
     std::vector<double> over_plain, to_floor;  // round by round
     for (std::size_t i = 0; i < v.ns.size(); ++i) {
       over_plain.push_back((v.ns[i] - variants[0].ns[i]) / events);
-      to_floor.push_back(v.ns[i] / variants[2].ns[i]);
+      to_floor.push_back(v.ns[i] / variants[kFloor].ns[i]);
     }
-    std::printf("%-5s %-6s %-6s %8.2f  %7.2f..%-7.2f %8.2f %10.2f %8.3f\n", kernel.c_str(),
+    std::printf("%-5s %-6s %-8s %8.2f  %7.2f..%-7.2f %8.2f %10.2f %8.3f\n", kernel.c_str(),
                 compiler.c_str(), v.name.c_str(), Quantile(v.ns, 0.5), Quantile(v.ns, 0.1),
                 Quantile(v.ns, 0.9), Quantile(v.ns, 0.0), Quantile(over_plain, 0.5),
                 Quantile(to_floor, 0.5));
@@ -121,7 +130,7 @@ int main(int argc, char** argv) {
   const int rounds = argc > 1 ? std::atoi(argv[1]) : 401;
   std::vector<std::string> kernels(argv + std::min(argc, 2), argv + argc);
   if (kernels.empty()) kernels = {"leaf", "fib", "mix"};
-  std::printf("%-5s %-6s %-6s %8s  %16s %8s %10s %8s\n", "", "", "", "median", "10%..90%", "least",
+  std::printf("%-5s %-6s %-8s %8s  %16s %8s %10s %8s\n", "", "", "", "median", "10%..90%", "least",
               "per event", "to floor");
   for (const std::string& kernel : kernels)
     for (const char* compiler : {"gcc", "llvm"}) Measure(kernel, compiler, rounds);
