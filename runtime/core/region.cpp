@@ -133,6 +133,7 @@ constinit ObjectList list{};
 bool AddObject(stipple_dso* object) {
   if (list.count == list.room) {
     const std::uint32_t room = list.room == 0 ? 64 : 2 * list.room;
+    // NOLINTNEXTLINE(bugprone-sizeof-expression): a list of pointers.
     auto** objects = static_cast<stipple_dso**>(arena.Take(room * sizeof(stipple_dso*)));
     if (objects == nullptr) return false;
     for (std::uint32_t i = 0; i < list.count; ++i) objects[i] = list.objects[i];
