@@ -112,6 +112,7 @@ auto HotPartOf(Visitor& visitor) {
 /// Regions are the process's numbers; one that is not below region_count comes as 0.
 /// Returns false when there is no chunk left.
 template <class Visitor>
+// NOLINTNEXTLINE(readability-function-size): what is read, how far, from where, and who is told.
 bool ScanSome(const ThreadStream& thread, std::uint32_t region_count, std::uint64_t budget,
               ScanPosition& at, ScanCounts& counts, Visitor& visitor) {
   if (at.chunk >= thread.chunks.size()) return false;

@@ -31,7 +31,7 @@ class Scratch {
  public:
   explicit Scratch(std::size_t count) noexcept {
     if (count > kInline) {
-      bytes_ = count * sizeof(T);
+      bytes_ = count * sizeof(T);  // NOLINT(bugprone-sizeof-expression): T may be a pointer
       data_ = static_cast<T*>(TakePages(bytes_));
     }
   }
