@@ -7,7 +7,8 @@ namespace stipple {
 /// Ends the frame on top, which has no leave of its own.
 void ProfileVisitor::PopLeft(Hot& hot, std::uint64_t ticks) {
   if (hot.top->region->is_watched != 0)
-    collector_->Function(static_cast<std::uint32_t>(hot.top->region - regions_.data()), true, ticks);
+    collector_->Function(static_cast<std::uint32_t>(hot.top->region - regions_.data()), true,
+                         ticks);
   hot.Pop(hot.last);
 }
 
@@ -31,8 +32,8 @@ ProfileVisitor::Hot ProfileVisitor::Jump(Hot hot, const EventWord* record, std::
   return hot;
 }
 
-/// Takes the frames of one context off the stack and puts those of another there, as if all had been
-/// left, and entered again: inclusive time does not grow while a context waits, either.
+/// Takes the frames of one context off the stack and puts those of another there, as if all had
+/// been left, and entered again: inclusive time does not grow while a context waits, either.
 void ProfileVisitor::SwitchContext(Hot& hot, std::uint32_t from, std::uint32_t to) {
   if (hot.top != stack_.data()) {
     std::vector<RegionTicks*>& frames = waiting_[from];

@@ -32,8 +32,8 @@ struct Frame {
 
 /// Charges the time between two events to the region on top of the stack. Ticks are clamped into
 /// the selected span, so time outside it is nobody's. Below the outermost frame lies one of a
-/// region that is none, so that the stack is never empty. Frames of a context that waits are off the
-/// stack: its time stands still.
+/// region that is none, so that the stack is never empty. Frames of a context that waits are off
+/// the stack: its time stands still.
 class ProfileVisitor {
  public:
   /// What each event touches: a local object of the scan, so that it stays in registers.

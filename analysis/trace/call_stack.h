@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The functions that a thread is in, event by event: one stack for each context. Frames that a jump
-// left end there. A leave that is not that of the innermost frame shows that the frames above its own
-// were left unseen (__builtin_longjmp, an exception through C code): they end with it.
+// left end there. A leave that is not that of the innermost frame shows that the frames above its
+// own were left unseen (__builtin_longjmp, an exception through C code): they end with it.
 #ifndef STIPPLE_ANALYSIS_TRACE_CALL_STACK_H
 #define STIPPLE_ANALYSIS_TRACE_CALL_STACK_H
 

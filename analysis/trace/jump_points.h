@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Where the jumps of one thread lead: setjmp and longjmp, and contexts, each with a call stack of its
-// own (getcontext, setcontext, swapcontext).
+// Where the jumps of one thread lead: setjmp and longjmp, and contexts, each with a call stack of
+// its own (getcontext, setcontext, swapcontext).
 //
 // The stack pointer that a jump goes back to names its jump point. A longjmp to a point on another
 // stack is how some coroutines switch: it changes the context, and the frames left behind wait.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Jumps between frames and between stacks, as jumps.S sees them, become records: the reader pops the
-// frames that a longjmp left, and keeps one call stack for each context. Only in the shared library.
+// Jumps between frames and between stacks, as jumps.S sees them, become records: the reader pops
+// the frames that a longjmp left, and keeps one call stack for each context. Only in the shared
+// library.
 //
 // A jump point is named by the stack pointer that it goes back to, not by its buffer: buffers are
 // copied, and of two points with the same stack pointer only the later one can be alive.
@@ -24,9 +25,9 @@ void stipple_context_end();
 namespace stipple {
 namespace {
 
-constexpr const char* kNames[] = {"setjmp",     "_setjmp",       "__sigsetjmp", "getcontext",
-                                  "longjmp",    "_longjmp",      "siglongjmp",  "__longjmp_chk",
-                                  "swapcontext", "setcontext",   "vfork"};
+constexpr const char* kNames[] = {"setjmp",      "_setjmp",    "__sigsetjmp", "getcontext",
+                                  "longjmp",     "_longjmp",   "siglongjmp",  "__longjmp_chk",
+                                  "swapcontext", "setcontext", "vfork"};
 static_assert(sizeof kNames / sizeof kNames[0] == sizeof stipple_jumps / sizeof stipple_jumps[0]);
 
 constexpr int kStackSlot = 6;  // of glibc's jmp_buf, mangled

@@ -33,8 +33,8 @@ void EndStepping(Thread& thread) {
   thread.step = 0;
 }
 
-/// The watch: a thread that libc does not know. It shares the thread pointer of the one that began it,
-/// and that may end, so nothing here touches thread-local memory.
+/// The watch: a thread that libc does not know. It shares the thread pointer of the one that began
+/// it, and that may end, so nothing here touches thread-local memory.
 [[noreturn]] void Watch(Process* process) {
   constexpr long kSetName = 15;
   Syscall(SYS_prctl, kSetName, Argument("stipple"));

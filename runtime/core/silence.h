@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: MIT
-// Silent threads. An event holds 40 bits of its time: after a silence of more than 2^40 ticks (220 s
-// at 5 GHz, 520 s at 2.1 GHz) it would be taken for an earlier one, so a TimeStamp goes before it.
+// Silent threads. An event holds 40 bits of its time: after a silence of more than 2^40 ticks (220
+// s at 5 GHz, 520 s at 2.1 GHz) it would be taken for an earlier one, so a TimeStamp goes before
+// it.
 //
 // The event itself cannot know, it is written inline. Two things make it take the slow path:
-//   1. A thread that records seldom *steps*: each of its events takes the slow path. A thread begins so
-//      and goes on so until it has recorded 32 events quickly, and again after a chunk that took long.
-//   2. A watch sets `control.end` of threads that recorded nothing between two of its rounds to 0. It
+//   1. A thread that records seldom *steps*: each of its events takes the slow path. A thread
+//   begins so
+//      and goes on so until it has recorded 32 events quickly, and again after a chunk that took
+//      long.
+//   2. A watch sets `control.end` of threads that recorded nothing between two of its rounds to 0.
+//   It
 //      is a thread of its own, begun by the first slow path in a process older than 100 s: short
 //      programs, and what they ask about their threads, never meet it.
-// Left out is a process whose threads all fall silent before that age, one of them in quick succession.
+// Left out is a process whose threads all fall silent before that age, one of them in quick
+// succession.
 #ifndef STIPPLE_RUNTIME_CORE_SILENCE_H
 #define STIPPLE_RUNTIME_CORE_SILENCE_H
 
@@ -27,9 +32,9 @@ inline constexpr std::uint64_t kSilentTicks = std::uint64_t{1} << 36;  // wants 
 /// From now on every event of the thread, which has just got a chunk, takes the slow path.
 void BeginStepping(Thread& thread, std::uint64_t ticks);
 
-/// A place for `bytes` in the chunk of a stepping thread, behind a TimeStamp if it was silent for long
-/// and they are a function event; null if the chunk is full. It steps no longer then, or when it has
-/// become quick. Signals are blocked.
+/// A place for `bytes` in the chunk of a stepping thread, behind a TimeStamp if it was silent for
+/// long and they are a function event; null if the chunk is full. It steps no longer then, or when
+/// it has become quick. Signals are blocked.
 EventWord* Step(Thread& thread, std::uint64_t bytes, std::uint64_t ticks);
 
 /// The place for `bytes` whose reservation failed only because the watch wanted it to, behind a

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* User-level contexts: each has a call stack of its own. Two generators take turns with main, end by
- * uc_link; a third is left unfinished; setcontext goes back to a getcontext; a stack is used again. */
+/* User-level contexts: each has a call stack of its own. Two generators take turns with main, end
+ * by uc_link; a third is left unfinished; setcontext goes back to a getcontext; a stack is used
+ * again. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <ucontext.h>

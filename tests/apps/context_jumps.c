@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Coroutines as some libraries make them: swapcontext once, to get onto the new stack, and from then on
- * setjmp and longjmp from stack to stack. */
+/* Coroutines as some libraries make them: swapcontext once, to get onto the new stack, and from
+ * then on setjmp and longjmp from stack to stack. */
 #include <setjmp.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* A recursion a million frames deep, on a stack that is large enough, and back by returns; then again,
- * and back by one longjmp. */
+/* A recursion a million frames deep, on a stack that is large enough, and back by returns; then
+ * again, and back by one longjmp. */
 #include <pthread.h>
 #include <setjmp.h>
 #include <stdio.h>

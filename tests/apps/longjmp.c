@@ -56,7 +56,8 @@ __attribute__((noinline)) void Interrupted(void) {
   sigprocmask(SIG_SETMASK, NULL, &before);
   if (sigsetjmp(out_of_handler, 1) == 0) Raise();
   sigprocmask(SIG_SETMASK, NULL, &after);
-  printf("mask %s\n", sigismember(&after, SIGUSR1) == sigismember(&before, SIGUSR1) ? "kept" : "lost");
+  printf("mask %s\n",
+         sigismember(&after, SIGUSR1) == sigismember(&before, SIGUSR1) ? "kept" : "lost");
 }
 
 __attribute__((noinline)) void Copied(void) {

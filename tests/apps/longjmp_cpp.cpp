@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// longjmp through C++ functions whose locals need no destructor, and between them an exception that is
-// caught on the way.
+// longjmp through C++ functions whose locals need no destructor, and between them an exception that
+// is caught on the way.
 #include <csetjmp>
 #include <cstdio>
 #include <stdexcept>

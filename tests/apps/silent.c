@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Threads that record nothing for almost nine minutes, longer than an event's time of 40 bits lasts at
- * 2.1 GHz: one records seldom, one had recorded in quick succession, and one takes new chunks meanwhile. */
+/* Threads that record nothing for almost nine minutes, longer than an event's time of 40 bits lasts
+ * at 2.1 GHz: one records seldom, one had recorded in quick succession, and one takes new chunks
+ * meanwhile. */
 #include <pthread.h>
 #include <semaphore.h>
 #include <stdio.h>

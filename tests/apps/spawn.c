@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Children that libc starts (posix_spawn, system, popen) and one of clone: what they do is not their
- * parent's. The child of clone has a stream of its own. */
+/* Children that libc starts (posix_spawn, system, popen) and one of clone: what they do is not
+ * their parent's. The child of clone has a stream of its own. */
 #define _GNU_SOURCE
 #include <sched.h>
 #include <signal.h>
@@ -21,7 +21,9 @@ __attribute__((noinline)) void Spawn(void) {
     waitpid(child, &status, 0);
   printf("spawned %d\n", WEXITSTATUS(status));
 }
-__attribute__((noinline)) void System(void) { printf("system %d\n", WEXITSTATUS(system("exit 5"))); }
+__attribute__((noinline)) void System(void) {
+  printf("system %d\n", WEXITSTATUS(system("exit 5")));
+}
 __attribute__((noinline)) void Pipe(void) {
   char line[20] = "";
   FILE* pipe = popen("echo piped", "r");

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Threads that end in C, one after the other so that their numbers are known: frames that are open then
- * end there, also for what destructors of thread-specific data do later. */
+/* Threads that end in C, one after the other so that their numbers are known: frames that are open
+ * then end there, also for what destructors of thread-specific data do later. */
 #include <pthread.h>
 #include <semaphore.h>
 #include <stdio.h>

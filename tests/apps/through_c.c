@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* An exception crosses a C function that has no exit for it: its frame ends with the next leave further
- * out. Catch and Throw stand in through_c_thrower.cpp. */
+/* An exception crosses a C function that has no exit for it: its frame ends with the next leave
+ * further out. Catch and Throw stand in through_c_thrower.cpp. */
 #include <stdio.h>
 
 void Catch(void (*middle)(int));

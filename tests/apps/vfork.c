@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* A child of vfork runs on its parent's stack and in its stream: what it entered is left when the
- * parent goes on. One ends by exec, one by _exit after an exec that failed, one from deep inside. */
+ * parent goes on. One ends by exec, one by _exit after an exec that failed, one from deep inside.
+ */
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/wait.h>

@@ -65,7 +65,8 @@ class Silence : public ::testing::Test {
 TEST_F(Silence, AThreadThatStepsStampsEachLongSilence) {
   BeginStepping(thread_, kBegin);
   std::uint64_t now = kBegin;
-  for (int i = 0; i < 100; ++i) ASSERT_TRUE(Event(now += i == 60 ? std::uint64_t{1} << 41 : 1 << 25));
+  for (int i = 0; i < 100; ++i)
+    ASSERT_TRUE(Event(now += i == 60 ? std::uint64_t{1} << 41 : 1 << 25));
   EXPECT_EQ(slow_, 100);
   const auto stamps = Stamps();
   ASSERT_EQ(stamps.size(), 1u);
