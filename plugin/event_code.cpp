@@ -215,4 +215,11 @@ std::string LeaveCode(const TemplateSyntax& syntax) {
 
 std::string_view ObjectCode() { return kObject; }
 
+// Strings that the linker merges: what the files of a program say alike stands in it once.
+std::string AccountCode(const std::set<std::string>& account) {
+  std::string code = "\t.pushsection\t.stipple_left_out,\"MS\",@progbits,1\n";
+  for (const std::string& text : account) code += "\t.asciz\t\"" + Quoted(text) + "\"\n";
+  return code + "\t.popsection\n";
+}
+
 }  // namespace stipple::plugin

@@ -4,6 +4,7 @@
 #ifndef STIPPLE_PLUGIN_EVENT_CODE_H
 #define STIPPLE_PLUGIN_EVENT_CODE_H
 
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -39,6 +40,9 @@ std::string LeaveCode(const TemplateSyntax& syntax);
 /// The block of the shared object with its constructor and destructor, for file scope (AT&T syntax,
 /// not a template). May occur any number of times in a file and in a shared object.
 std::string_view ObjectCode();
+
+/// The account of the selection as a section that is not loaded, for file scope (not a template).
+std::string AccountCode(const std::set<std::string>& account);
 
 }  // namespace stipple::plugin
 

@@ -115,7 +115,7 @@ std::string KnownOptions() {
 std::string DefaultText(const OptionSpec& spec) {
   const Options defaults;
   if (const auto* text = std::get_if<std::string Options::*>(&spec.member))
-    return defaults.*(*text);
+    return defaults.*(*text) == "default" ? "" : defaults.*(*text);
   if (const auto* count = std::get_if<std::int64_t Options::*>(&spec.member))
     return defaults.*(*count) > 0 ? fmt::format("{}", defaults.*(*count)) : "";
   if (const auto* number = std::get_if<double Options::*>(&spec.member))
@@ -135,7 +135,7 @@ void AddRow(CLI::App& app, const OptionSpec& spec, Options& options) {
                  fmt::format("{}{}", spec.meaning,
                              preset.empty() ? "" : fmt::format(" (default {})", preset)))
       ->type_name(std::string(spec.value))
-      ->expected(pair ? 2 : 1)
+      ->type_size(pair ? 2 : 1)
       ->multi_option_policy(pair ? CLI::MultiOptionPolicy::Throw
                                  : CLI::MultiOptionPolicy::TakeLast);
 }

@@ -73,6 +73,12 @@ std::string TimingText(const Trace& trace, const Process& p, const EventWord* re
     }
     case RecordKind::kTimeStamp:
       return "time stamp";
+    case RecordKind::kJumpPoint:
+      return "jump point";
+    case RecordKind::kUnwound:
+      return "unwound";
+    case RecordKind::kStackSwitch:
+      return "stack switch";
     default:
       return fmt::format("record of kind {}", static_cast<unsigned>(KindOf(*record)));
   }

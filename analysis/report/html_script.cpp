@@ -80,8 +80,9 @@ constexpr std::string_view kScript = R"js(
     var area = svg.getBoundingClientRect(), scale = svg.viewBox.baseVal.width / area.width;
     var x = (event.clientX - area.left) * scale, y = (event.clientY - area.top) * scale;
     if (x < data.left || x > data.right) return hide();
-    var row = data.rows.findIndex(function (r) { return y >= r[1] - 2 && y < r[1] + r[2] + 6; });
-    if (row < 0) return hide();
+    var row = 0, away = data.rows.map(function (r) { return Math.abs(y - r[1] - r[2] / 2) - r[2] / 2; });
+    away.forEach(function (pixels, i) { if (pixels < away[row]) row = i; });
+    if (away[row] > 6) return hide();
     show(row, Math.min(columns - 1, Math.floor((x - data.left) / (data.right - data.left) * columns)));
   });
   svg.addEventListener("pointerleave", hide);

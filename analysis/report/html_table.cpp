@@ -7,8 +7,8 @@
 #include <cmath>
 #include <vector>
 
+#include "analysis/stats/number.h"
 #include "analysis/trace/demangle.h"
-#include "analysis/views/number.h"
 #include "analysis/views/svg_write.h"
 #include "analysis/views/table_access.h"
 #include "analysis/views/text.h"

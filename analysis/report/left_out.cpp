@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "analysis/report/text.h"
+#include "analysis/stats/number.h"
 
 namespace stipple {
 namespace {
@@ -33,12 +33,12 @@ std::string FilterText(const FilterTotals& filter) {
         "the filter {} was not applied: only functions of -finstrument-functions were recorded, "
         "which have no names while the program runs",
         filter.path);
-  std::string text =
-      filter.filtered == 0
-          ? fmt::format("the filter {} excludes none of the {}", filter.path,
-                        CountText(filter.functions, "function"))
-          : fmt::format("the filter {} left out {} of {}", filter.path, CountText(filter.filtered),
-                        CountText(filter.functions, "function"));
+  std::string text = filter.filtered == 0
+                         ? fmt::format("the filter {} excludes none of the {}", filter.path,
+                                       FormatCount(filter.functions, "function"))
+                         : fmt::format("the filter {} left out {} of {}", filter.path,
+                                       FormatCount(static_cast<std::int64_t>(filter.filtered)),
+                                       FormatCount(filter.functions, "function"));
   if (filter.has_code) text += "; it is not applied to functions of -finstrument-functions";
   return text;
 }
@@ -93,7 +93,7 @@ std::vector<std::string> LeftOutTexts(const Trace& trace) {
     texts.push_back(fmt::format(
         "recording was switched off {}, {} in all: nothing of that time is shown, and functions "
         "that were open then include it",
-        CountText(paused.times, "time"), SecondsText(paused.seconds)));
+        FormatCount(paused.times, "time"), FormatSeconds(paused.seconds)));
   if (const FilterTotals filter = FilterOf(trace); !filter.path.empty())
     texts.push_back(FilterText(filter));
   return texts;

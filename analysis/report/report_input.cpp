@@ -7,6 +7,7 @@
 #include "analysis/report/text.h"
 #include "analysis/stats/finding_of.h"
 #include "analysis/stats/message_matrix.h"
+#include "analysis/stats/number.h"
 #include "analysis/stats/profile.h"
 #include "analysis/stats/states.h"
 #include "analysis/stats/timeline_of.h"
@@ -21,21 +22,21 @@ constexpr int kMostNarrowings = 8;
 
 std::string RanksText(const Trace& trace) {
   const auto count = static_cast<std::uint64_t>(trace.RankCount());
-  if (!trace.HasHost()) return CountText(count, "rank");
-  return CountText(count - 1, "node") + " and a host";
+  if (!trace.HasHost()) return FormatCount(count, "rank");
+  return FormatCount(count - 1, "node") + " and a host";
 }
 
 std::vector<std::string> FactsOf(const Analysis& analysis) {
   const Trace& trace = analysis.trace;
   std::vector<std::string> facts = {RanksText(trace),
-                                    SecondsText(static_cast<double>(trace.SpanNs()) * 1e-9),
-                                    CountText(trace.EventCount(), "event")};
+                                    FormatSeconds(static_cast<double>(trace.SpanNs()) * 1e-9),
+                                    FormatCount(trace.EventCount(), "event")};
   if (!analysis.mpi.sends.empty()) {
-    facts.push_back(CountText(analysis.mpi.sends.size(), "message"));
-    facts.push_back(BytesText(analysis.mpi.bytes));
+    facts.push_back(FormatCount(analysis.mpi.sends.size(), "message"));
+    facts.push_back(FormatBytes(static_cast<double>(analysis.mpi.bytes)));
   }
   if (const std::size_t jobs = JobsOf(trace.processes()).size(); jobs > 1)
-    facts.push_back(CountText(jobs, "MPI job"));
+    facts.push_back(FormatCount(jobs, "MPI job"));
   facts.push_back(LossText(analysis.health));
   return facts;
 }

@@ -4,12 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <type_traits>
 #include <vector>
 
+#include "analysis/stats/number.h"
 #include "analysis/trace/demangle.h"
 
 namespace stipple {
@@ -135,40 +134,12 @@ std::string TableJson(const Table& table) {
   return Dumped(rows);
 }
 
-std::string CountText(std::uint64_t count) {
-  std::string digits = std::to_string(count);
-  for (std::size_t at = digits.size(); at > 3; at -= 3) digits.insert(at - 3, ",");
-  return digits;
-}
-
-std::string CountText(std::uint64_t count, std::string_view noun) {
-  return fmt::format("{} {}{}", CountText(count), noun, count == 1 ? "" : "s");
-}
-
 std::string LossText(const TraceHealth& health) {
   const std::uint64_t lost = health.LostEvents();
   if (!health.LostUncounted())
-    return lost == 0 ? "no event lost" : CountText(lost, "event") + " lost";
+    return lost == 0 ? "no event lost" : FormatCount(lost, "event") + " lost";
   return lost == 0 ? "an unknown number of events lost"
-                   : "at least " + CountText(lost, "event") + " lost";
-}
-
-std::string BytesText(std::uint64_t bytes) {
-  constexpr std::array kUnits = {"B", "kB", "MB", "GB", "TB"};
-  if (bytes < 1000) return fmt::format("{} B", bytes);
-  double value = static_cast<double>(bytes);
-  std::size_t unit = 0;
-  for (; value >= 999.5 && unit + 1 < kUnits.size(); ++unit) value /= 1000;
-  return fmt::format("{:.{}f} {}", value, value < 99.5 ? 1 : 0, kUnits[unit]);
-}
-
-std::string SecondsText(double seconds) {
-  const double size = std::abs(seconds);
-  if (size == 0) return "0 s";
-  if (size < 1e-6) return fmt::format("{:.0f} ns", seconds * 1e9);
-  if (size < 1e-3) return fmt::format("{:.3g} us", seconds * 1e6);
-  if (size < 1) return fmt::format("{:.3g} ms", seconds * 1e3);
-  return fmt::format("{:.{}f} s", seconds, size < 10 ? 3 : size < 100 ? 2 : 1);
+                   : "at least " + FormatCount(lost, "event") + " lost";
 }
 
 }  // namespace stipple

@@ -11,6 +11,7 @@ namespace stipple {
 Analysis::Analysis(const Trace& of) : trace(of), profiles(of.locations().size()) {
   std::vector<LocationActivity> activities(profiles.size());
   std::vector<std::uint64_t> leaves_without_enter(profiles.size());
+  std::vector<std::uint64_t> enters_without_leave(profiles.size());
   trace.ForEachLocation("reading", [&](const Location& l) {
     const Process& process = trace.ProcessOf(l);
     MpiCollector collector(trace, l);
@@ -19,6 +20,7 @@ Analysis::Analysis(const Trace& of) : trace(of), profiles(of.locations().size())
     visitor.Finish(l.last_ticks);
     profiles[l.index] = ProfileFrom(trace, l, visitor, true);
     activities[l.index] = collector.Finish();
+    enters_without_leave[l.index] = visitor.enters_without_leave();
     // A forked child leaves the functions that its parent had entered.
     if (process.stream->header.forked == 0)
       leaves_without_enter[l.index] = visitor.leaves_without_enter();
@@ -26,9 +28,11 @@ Analysis::Analysis(const Trace& of) : trace(of), profiles(of.locations().size())
   mpi = JoinActivity(trace, std::move(activities));
   waits = FindWaits(trace, mpi);
   health = trace.Health();
-  for (const Location& l : trace.locations())
-    health.Add(Defect::kLeaveWithoutEnter, trace.ProcessOf(l).stream->file_name,
-               leaves_without_enter[l.index]);
+  for (const Location& l : trace.locations()) {
+    const std::string& where = trace.ProcessOf(l).where;
+    health.Add(Defect::kLeaveWithoutEnter, where, leaves_without_enter[l.index]);
+    health.Add(Defect::kEnterWithoutLeave, where, enters_without_leave[l.index]);
+  }
   health.Add(mpi.health);
 }
 

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <cstdio>
 #include <map>
 #include <numeric>
 
+#include "analysis/stats/number.h"
 #include "analysis/stats/profile.h"
 #include "analysis/stats/states.h"
 #include "analysis/trace/demangle.h"
@@ -31,12 +31,6 @@ std::string Number(const char* format, double value) {
   char text[64];
   std::snprintf(text, sizeof(text), format, value);
   return text;
-}
-
-std::string SecondsText(double seconds) {
-  return seconds < 1e-3 ? Number("%.0f us", seconds * 1e6)
-         : seconds < 1  ? Number("%.3g ms", seconds * 1e3)
-                        : Number("%.3g s", seconds);
 }
 
 std::string Capitalised(std::string text) {
@@ -189,8 +183,8 @@ void BlameOne(const Trace& trace, const std::vector<RankStates>& states,
                first.region + " meanwhile; ";
   const double mean = waited / static_cast<double>(victims.size());
   f.detail =
-      Capitalised(f.detail + "at most " + SecondsText(mean) + " of " +
-                  SecondsText(static_cast<double>(trace.SpanNs()) * 1e-9) + " could be gained.");
+      Capitalised(f.detail + "at most " + FormatSeconds(mean) + " of " +
+                  FormatSeconds(static_cast<double>(trace.SpanNs()) * 1e-9) + " could be gained.");
 }
 
 /// The region in which the ranks compute most, and its share of the computing time.

@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
+#include "analysis/trace/jump_points.h"
 #include "analysis/trace/mpi_collector.h"
 #include "analysis/trace/scan.h"
 
@@ -30,7 +32,8 @@ struct Frame {
 
 /// Charges the time between two events to the region on top of the stack. Ticks are clamped into
 /// the selected span, so time outside it is nobody's. Below the outermost frame lies one of a
-/// region that is none, so that the stack is never empty.
+/// region that is none, so that the stack is never empty. Frames of a context that waits are off the
+/// stack: its time stands still.
 class ProfileVisitor {
  public:
   /// What each event touches: a local object of the scan, so that it stays in registers.
@@ -62,14 +65,15 @@ class ProfileVisitor {
         *++top = {r, now};
       } else if (top->region == r) [[likely]] {
         Pop(now);
-      } else if (r->open != 0) {  // frames above it were left without an event
-        while (top->region != r) Pop(now);
+      } else if (r->open != 0) {
+        *this = owner->Repair(*this, r, ticks);
         Pop(now);
       } else {
         ++owner->leaves_without_enter_;
       }
     }
     void Record(const EventWord* record, std::uint64_t ticks) {
+      if (IsJump(KindOf(*record))) *this = owner->Jump(*this, record, ticks);
       if (owner->collector_ != nullptr) owner->collector_->Record(record, ticks);
     }
 
@@ -106,8 +110,19 @@ class ProfileVisitor {
   /// By region of the process.
   std::span<const RegionTicks> regions() const { return {regions_.data(), regions_.size() - 1}; }
   std::uint64_t leaves_without_enter() const { return leaves_without_enter_; }
+  /// Frames whose end was seen only by the leave of one further out.
+  std::uint64_t enters_without_leave() const { return enters_without_leave_; }
 
  private:
+  static bool IsJump(RecordKind kind) {
+    return kind == RecordKind::kJumpPoint || kind == RecordKind::kUnwound ||
+           kind == RecordKind::kStackSwitch || kind == RecordKind::kThreadEnd;
+  }
+  // By value: a hot part whose address is known elsewhere would not stay in registers.
+  Hot Repair(Hot hot, const RegionTicks* region, std::uint64_t ticks);
+  Hot Jump(Hot hot, const EventWord* record, std::uint64_t ticks);
+  void SwitchContext(Hot& hot, std::uint32_t from, std::uint32_t to);
+  void PopLeft(Hot& hot, std::uint64_t ticks);
   Frame* Limit() { return stack_.data() + stack_.size() - 1; }
   /// Doubles a full stack; returns its top.
   Frame* Grow() {
@@ -120,6 +135,9 @@ class ProfileVisitor {
   std::vector<Frame> stack_;
   MpiCollector* collector_;
   std::uint64_t leaves_without_enter_ = 0;
+  std::uint64_t enters_without_leave_ = 0;
+  JumpPoints points_;
+  std::unordered_map<std::uint32_t, std::vector<RegionTicks*>> waiting_;  // by context
   Hot hot_{};
 };
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <tuple>
 
+#include "analysis/trace/call_stack.h"
 #include "analysis/trace/ranks.h"
 
 namespace stipple {
@@ -272,24 +273,16 @@ class CulpritVisitor {
     }
     std::ranges::sort(edges_, {}, &Edge::ticks);
     for (auto& by_kind : times_) by_kind.resize(count_);
-    open_.resize(count_);
   }
 
   void Function(std::uint32_t region, bool leave, std::uint64_t ticks) {
     Spend(ticks);
-    if (!leave) {
-      stack_.push_back(region);
-      ++open_[region];
-    } else if (open_[region] != 0) {
-      std::uint32_t top = 0;
-      do {
-        top = stack_.back();
-        stack_.pop_back();
-        --open_[top];
-      } while (top != region);
-    }
+    stack_.Function(region, leave);
   }
-  void Record(const EventWord*, std::uint64_t) {}
+  void Record(const EventWord* record, std::uint64_t ticks) {
+    Spend(ticks);
+    stack_.Record(record);
+  }
   void Finish() { Spend(kNoTickLimit); }
 
   /// Of the process; 0: none.
@@ -316,10 +309,10 @@ class CulpritVisitor {
   }
   void SpendTo(std::uint64_t now) {
     if (now <= last_) return;
-    if (!stack_.empty())
+    if (stack_.depth() != 0)
       for (std::size_t k = 0; k < kWaitKinds; ++k)
         if (active_[k] != 0)
-          times_[k][stack_.back()] += static_cast<double>(now - last_) * active_[k];
+          times_[k][stack_.top()] += static_cast<double>(now - last_) * active_[k];
     last_ = now;
   }
 
@@ -328,8 +321,7 @@ class CulpritVisitor {
   std::size_t next_ = 0;
   std::array<int, kWaitKinds> active_{};
   std::array<std::vector<double>, kWaitKinds> times_;
-  std::vector<std::uint32_t> stack_;
-  std::vector<std::uint32_t> open_;
+  CallStack stack_;
   std::uint64_t last_ = 0;
 };
 

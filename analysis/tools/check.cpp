@@ -2,8 +2,8 @@
 // stipple check: proves an archive sound.
 #include <fmt/format.h>
 
-#include "analysis/report/text.h"
 #include "analysis/stats/analysis.h"
+#include "analysis/stats/number.h"
 #include "analysis/tools/command.h"
 #include "analysis/tools/progress.h"
 
@@ -22,8 +22,8 @@ int RunCheck(const Arguments& arguments) {
   std::string text;
   for (const Problem& p : health.problems()) text += TextOf(p) + "\n";
   if (health.Sound())
-    text = fmt::format("{}: sound, {} of {}\n", archive, CountText(trace.EventCount(), "event"),
-                       CountText(static_cast<std::uint64_t>(trace.RankCount()), "rank"));
+    text = fmt::format("{}: sound, {} of {}\n", archive, FormatCount(trace.EventCount(), "event"),
+                       FormatCount(static_cast<std::uint64_t>(trace.RankCount()), "rank"));
   WriteOut(text);
   return health.Sound() ? 0 : 1;
 }

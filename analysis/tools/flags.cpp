@@ -1,24 +1,57 @@
 // SPDX-License-Identifier: MIT
 // stipple flags: what makes a compiler trace.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <regex>
+#include <sstream>
 
 #include "analysis/tools/command.h"
+#include "analysis/tools/left_out.h"
 #include "analysis/tools/process.h"
 #include "analysis/trace/input_error.h"
+#include "analysis/trace/stream.h"
 
 namespace stipple {
 namespace {
 
 namespace fs = std::filesystem;
 
+/// The program file that would run, links resolved; empty if there is none.
+fs::path FileOf(const std::string& program) {
+  std::error_code error;
+  if (program.find('/') != std::string::npos) return fs::canonical(program, error);
+  const char* path = std::getenv("PATH");
+  std::istringstream directories(path == nullptr ? "" : path);
+  for (std::string directory; std::getline(directories, directory, ':');) {
+    const fs::path file = fs::path(directory.empty() ? "." : directory) / program;
+    if (access(file.c_str(), X_OK) == 0 && fs::is_regular_file(file, error))
+      return fs::canonical(file, error);
+  }
+  return {};
+}
+
+/// Folder of the plugin, from where distributions keep compilers: x86_64-linux-gnu-g++-12,
+/// llvm-14/bin/clang. Wrappers ask for every file they compile, and to run a compiler takes longer
+/// than all else; a plugin says so itself when it is not the compiler's. Empty: not to be seen.
+std::string FolderByName(const fs::path& file) {
+  static const std::regex gcc("(^|.*-)(gcc|g\\+\\+|gfortran)-([0-9]+)");
+  static const std::regex llvm(".*/llvm-([0-9]+)/bin/clang(\\+\\+)?(-[0-9]+)?");
+  std::smatch match;
+  const std::string name = file.filename();
+  if (std::regex_match(name, match, gcc)) return "gcc-" + match[3].str();
+  if (std::regex_match(file.native(), match, llvm)) return "llvm-" + match[1].str();
+  return {};
+}
+
 /// Folder of the compiler's plugin: "gcc-12", "llvm-14". Asks the compiler, so that a wrapper
 /// (mpicxx) answers for the one behind it.
 std::string FolderOf(const std::string& compiler) {
+  if (std::string folder = FolderByName(FileOf(compiler)); !folder.empty()) return folder;
   const std::optional<std::string> version = OutputOf({compiler, "--version"});
   if (!version)
     throw InputError("stipple flags", "'" + compiler + " --version' cannot be run: no compiler?");
@@ -27,12 +60,9 @@ std::string FolderOf(const std::string& compiler) {
   if (std::regex_search(*version, match, clang)) return fmt::format("llvm-{}", match[1].str());
   if (version->find("Free Software Foundation") == std::string::npos)
     throw InputError("stipple flags", "'" + compiler + "' is neither GCC nor clang");
-  for (const char* question : {"-dumpfullversion", "-dumpversion"}) {
-    const std::optional<std::string> full = OutputOf({compiler, question});
-    static const std::regex number("^([0-9]+)");
-    if (full && std::regex_search(*full, match, number))
-      return fmt::format("gcc-{}", match[1].str());
-  }
+  // "g++ (Debian 12.2.0-14) 12.2.0"
+  static const std::regex number("^[^\\n]* ([0-9]+)\\.[0-9.]+( [^\\n]*)?\\n");
+  if (std::regex_search(*version, match, number)) return fmt::format("gcc-{}", match[1].str());
   throw InputError("stipple flags", "'" + compiler + "' does not tell its version");
 }
 
@@ -49,6 +79,8 @@ std::vector<std::string> KnownFolders() {
 fs::path PluginOf(const std::string& compiler) {
   const std::string folder = FolderOf(compiler);
   fs::path plugin = fs::path(LibraryDirectory()) / folder / "stipple.so";
+  if (plugin.native().find_first_of(" \t") != std::string::npos)
+    throw InputError(LibraryDirectory(), "flags cannot name a path with a space in it");
   if (fs::exists(plugin)) return plugin;
   std::string known;
   for (const std::string& name : KnownFolders()) known.append(" ").append(name);
@@ -79,18 +111,49 @@ std::string FlagsOf(const fs::path& plugin, bool link, bool is_static) {
   return flags;
 }
 
+/// What the plugin left out of OBJECT, and why.
+std::string ExplanationOf(const std::string& object) {
+  const std::optional<MappedFile> file = MappedFile::Open(object);
+  if (!file) throw InputError(object, "cannot be read");
+  SelectionAccount account;
+  switch (ReadAccount(file->bytes(), account)) {
+    case AccountProblem::kNotElf:
+      throw InputError(object, "is no object file, library or program for x86-64");
+    case AccountProblem::kThinArchive:
+      throw InputError(object, "is a thin archive, which holds no objects; name those");
+    case AccountProblem::kNone:
+      break;
+  }
+  if (account.empty())
+    throw InputError(object,
+                     "does not say what was instrumented: it was built without the plugin, has no "
+                     "functions of its own, or was compiled with GCC's -flto, where functions are "
+                     "selected when linking: name the program");
+  return Explain(account);
+}
+
 }  // namespace
 
 int RunFlags(const Arguments& arguments) {
   CLI::App app("Print the flags that make a compiler trace, or say that there is no plugin for it.",
                "flags");
   std::string compiler;
+  std::string object;
   bool link = false;
   bool is_static = false;
-  app.add_option("COMPILER", compiler, "g++, clang++, mpicxx, gfortran, ...")->required();
+  app.add_option("COMPILER", compiler, "g++, clang++, mpicxx, gfortran, ...");
   app.add_flag("--link", link, "what linking needs: with -flto, or --static");
   app.add_flag("--static", is_static, "with --link: for -static")->needs("--link");
+  app.add_option("--explain", object,
+                 "say what was left out of an object, library or program, and why")
+      ->type_name("OBJECT");
   if (!Parse(app, arguments)) return 0;
+  if (object.empty() == compiler.empty())
+    throw InputError("stipple flags", "takes either COMPILER or --explain OBJECT");
+  if (!object.empty()) {
+    WriteOut(ExplanationOf(object));
+    return 0;
+  }
   WriteOut(FlagsOf(PluginOf(compiler), link, is_static) + "\n");
   return 0;
 }

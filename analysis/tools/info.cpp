@@ -7,6 +7,7 @@
 #include "analysis/report/left_out.h"
 #include "analysis/report/text.h"
 #include "analysis/stats/analysis.h"
+#include "analysis/stats/number.h"
 #include "analysis/tools/command.h"
 #include "analysis/tools/progress.h"
 #include "analysis/trace/ranks.h"
@@ -100,29 +101,32 @@ std::string ClockText(const Analysis& info) {
   if (!clock.synchronised)
     return fmt::format("{} computers, not synchronised by readings", clock.computers);
   return fmt::format("{} computers, synchronised to {}; {} against the order of time",
-                     clock.computers, SecondsText(clock.residual_ns * 1e-9),
-                     CountText(info.mpi.reversed, "message"));
+                     clock.computers, FormatSeconds(clock.residual_ns * 1e-9),
+                     FormatCount(info.mpi.reversed, "message"));
 }
 
 std::string InfoText(const Analysis& info) {
   const Trace& trace = info.trace;
   const auto rank_count = static_cast<std::uint64_t>(trace.RankCount());
-  std::string text = fmt::format(
-      "{}: {} on {} in {}, {}\n", trace.path(), CountText(trace.EventCount(), "event"),
-      CountText(rank_count, "rank"), SecondsText(Seconds(trace.SpanNs())), LossText(info.health));
+  std::string text =
+      fmt::format("{}: {} on {} in {}, {}\n", trace.path(),
+                  FormatCount(trace.EventCount(), "event"), FormatCount(rank_count, "rank"),
+                  FormatSeconds(Seconds(trace.SpanNs())), LossText(info.health));
   text += fmt::format("program    {}\n", trace.Program());
   text += fmt::format("processes  {}\n", trace.processes().size());
   text += fmt::format("threads    {}\n", trace.locations().size());
-  text +=
-      fmt::format("messages   {} matched ({} sent), {} unmatched\n", CountText(info.mpi.matched),
-                  BytesText(info.mpi.bytes), CountText(info.mpi.Unmatched()));
+  text += fmt::format("messages   {} matched ({} sent), {} unmatched\n",
+                      FormatCount(static_cast<std::int64_t>(info.mpi.matched)),
+                      FormatBytes(static_cast<double>(info.mpi.bytes)),
+                      FormatCount(static_cast<std::int64_t>(info.mpi.Unmatched())));
   text += fmt::format("clock      {}\n", ClockText(info));
   if (const Paused paused = LongestPaused(trace); paused.times != 0)
-    text += fmt::format("paused     {}, {}\n", SecondsText(paused.seconds),
-                        CountText(paused.times, "time"));
+    text += fmt::format("paused     {}, {}\n", FormatSeconds(paused.seconds),
+                        FormatCount(paused.times, "time"));
   if (const FilterTotals filter = FilterOf(trace); !filter.path.empty())
     text += fmt::format("filter     {}: {} of {} left out\n", filter.path,
-                        CountText(filter.filtered), CountText(filter.functions, "function"));
+                        FormatCount(static_cast<std::int64_t>(filter.filtered)),
+                        FormatCount(filter.functions, "function"));
   text += '\n';
   Table table{"locations",
               TableShape::kRows,

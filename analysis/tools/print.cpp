@@ -5,12 +5,15 @@
 #include <unistd.h>
 
 #include <queue>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "analysis/report/event_text.h"
 #include "analysis/stats/analysis.h"
 #include "analysis/tools/command.h"
 #include "analysis/tools/progress.h"
+#include "analysis/trace/call_stack.h"
 
 namespace stipple {
 namespace {
@@ -34,14 +37,27 @@ class Output {
   fmt::memory_buffer buffer_;
 };
 
+/// Regions of the frames that the event ended without being their leave.
+std::span<const std::uint32_t> Follow(CallStack& stack, const Event& event) {
+  return event.record != nullptr ? stack.Record(event.record)
+                                 : stack.Function(event.region, event.leave);
+}
+
 void PrintCanonical(const Trace& trace, const Selection& selection) {
   Output out;
   for (const Location& l : trace.locations()) {
     if (!selection.HasRank(l.rank)) continue;
     out.Line("location {} {} {}", l.rank, l.process, l.thread);
     EventCursor cursor(trace, l);
+    CallStack stack;
     while (const Event* event = cursor.Next()) {
+      const std::uint32_t context = stack.context();
+      const std::span<const std::uint32_t> left = Follow(stack, *event);
       if (!selection.WholeTime() && !selection.HasTime(trace.TimeNs(l, event->ticks))) continue;
+      if (stack.context() != context) out.Line("context {}", stack.context());
+      for (const std::uint32_t region : left)
+        out.Line("{} {}", event->record != nullptr ? "unwound" : "unclosed",
+                 trace.regions()[region].name);
       if (const std::string text = CanonicalText(trace, l, *event); !text.empty())
         out.Line("{}", text);
     }
@@ -54,7 +70,7 @@ struct Reader {
   std::string name;  // "3.0", "host.1", "3/1.0" for a further process
   const Event* event = nullptr;
   std::int64_t time_ns = 0;
-  std::size_t depth = 0;
+  CallStack stack;
 
   bool Advance(const Trace& trace) {
     event = cursor.Next();
@@ -68,22 +84,36 @@ std::string LocationName(const Trace& trace, const Location& l) {
   return fmt::format("{}{}.{}", trace.RankName(l.rank), process, l.thread);
 }
 
+/// What a jump did: " to main, 3 left", " to context 1".
+std::string JumpText(const Trace& trace, const CallStack& stack, std::uint32_t context_before,
+                     std::size_t left) {
+  std::string text;
+  if (stack.context() != context_before) text += fmt::format(" to context {}", stack.context());
+  if (left == 0) return text;
+  const char* top = stack.depth() == 0 ? "no function" : trace.regions()[stack.top()].name.c_str();
+  return text + fmt::format(" to {}, {} left", top, left);
+}
+
 void PrintOne(const Trace& trace, const Selection& selection, Reader& r, Output& out) {
   const bool enter = r.event->record == nullptr && !r.event->leave;
-  const bool leave = r.event->record == nullptr && r.event->leave;
-  if (leave && r.depth > 0) --r.depth;
-  if (selection.HasTime(r.time_ns))
-    out.Line("{:>4}.{:09} {:>7}  {:{}}{}", r.time_ns / 1'000'000'000, r.time_ns % 1'000'000'000,
-             r.name, "", 2 * std::min<std::size_t>(r.depth, 64),
-             EventText(trace, r.cursor.location(), *r.event));
-  if (enter) ++r.depth;
+  const std::uint32_t context = r.stack.context();
+  const std::size_t left = Follow(r.stack, *r.event).size();
+  if (!selection.HasTime(r.time_ns)) return;
+  std::string text = EventText(trace, r.cursor.location(), *r.event);
+  if (r.event->record != nullptr)
+    text += JumpText(trace, r.stack, context, left);
+  else if (left != 0)
+    text += fmt::format("  ({} left unseen)", left);
+  const std::size_t depth = r.stack.depth() - (enter ? 1 : 0);
+  out.Line("{:>4}.{:09} {:>7}  {:{}}{}", r.time_ns / 1'000'000'000, r.time_ns % 1'000'000'000,
+           r.name, "", 2 * std::min<std::size_t>(depth, 64), text);
 }
 
 void PrintMerged(const Trace& trace, const Selection& selection) {
   std::vector<Reader> readers;
   for (const Location& l : trace.locations())
     if (selection.HasRank(l.rank))
-      readers.push_back({EventCursor(trace, l), LocationName(trace, l)});
+      readers.push_back({EventCursor(trace, l), LocationName(trace, l), nullptr, 0, {}});
   const auto later = [&readers](std::size_t a, std::size_t b) {
     return std::pair(readers[a].time_ns, a) > std::pair(readers[b].time_ns, b);
   };

@@ -15,6 +15,7 @@
 
 #include "analysis/report/left_out.h"
 #include "analysis/report/text.h"
+#include "analysis/stats/number.h"
 #include "analysis/tools/command.h"
 #include "analysis/tools/launcher.h"
 #include "analysis/tools/process.h"
@@ -192,11 +193,11 @@ void Summarise(const RunOptions& options, int status) {
   const Trace trace = Trace::Open(archive);
   const TraceHealth health = trace.Health();
   fmt::print(stderr, "stipple: recorded {} in {} of {}: {}, {}{}\n",
-             CountText(trace.EventCount(), "event"),
+             FormatCount(trace.EventCount(), "event"),
              fmt::format("{} process{}", trace.processes().size(),
                          trace.processes().size() == 1 ? "" : "es"),
-             CountText(static_cast<std::uint64_t>(trace.RankCount()), "rank"),
-             BytesText(BytesOnDisk(archive)), LossText(health),
+             FormatCount(static_cast<std::uint64_t>(trace.RankCount()), "rank"),
+             FormatBytes(static_cast<double>(BytesOnDisk(archive))), LossText(health),
              health.Sound() ? "" : fmt::format(" (problems: stipple check {})", archive));
   for (const std::string& text : LeftOutTexts(trace)) fmt::print(stderr, "stipple: {}\n", text);
   fmt::print(stderr, "stipple: next: stipple report {} -o {}.html\n", archive,

@@ -44,6 +44,9 @@ constexpr std::array kDefects = {
                 "event on an undefined communicator", "events on undefined communicators"},
     DefectEntry{Defect::kLeaveWithoutEnter, "leave-without-enter", "leave event has no enter event",
                 "leave events have no enter event"},
+    DefectEntry{Defect::kEnterWithoutLeave, "enter-without-leave",
+                "function was left without an event (unseen jump?)",
+                "functions were left without an event (unseen jumps?)"},
     DefectEntry{Defect::kUnclosedProcess, "unclosed-process",
                 "process did not end in order (killed?)",
                 "processes did not end in order (killed?)"},
@@ -90,6 +93,10 @@ void TraceHealth::Add(Defect defect, std::string_view where, std::uint64_t count
 
 void TraceHealth::Add(const TraceHealth& other) {
   for (const Problem& p : other.problems_) Add(p.defect, p.where, p.count);
+}
+
+void TraceHealth::AddAt(std::string_view where, const TraceHealth& other) {
+  for (const Problem& p : other.problems_) Add(p.defect, where, p.count);
 }
 
 std::uint64_t TraceHealth::CountOf(Defect defect) const {

@@ -30,6 +30,7 @@ enum class Defect {
   kUnnamedFunction,
   kUndefinedCommunicator,
   kLeaveWithoutEnter,
+  kEnterWithoutLeave,
   kUnclosedProcess,
   kStillRunning,
   kMissingRank,
@@ -64,6 +65,8 @@ class TraceHealth {
   /// Adds to what is known of this defect in this place; a count of 0 changes nothing.
   void Add(Defect defect, std::string_view where, std::uint64_t count = 1);
   void Add(const TraceHealth& other);
+  /// The same, all of them in one place.
+  void AddAt(std::string_view where, const TraceHealth& other);
 
   std::uint64_t CountOf(Defect defect) const;
   /// Events that happened and cannot be read, as far as they can be counted.

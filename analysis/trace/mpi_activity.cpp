@@ -150,7 +150,7 @@ MpiActivity JoinActivity(const Trace& trace, std::vector<LocationActivity> locat
     Append(a.sends, p.sends);
     Append(a.receives, p.receives);
     Append(a.collectives, p.collectives);
-    const std::string& where = trace.processes()[i].stream->file_name;
+    const std::string& where = trace.processes()[i].where;
     a.health.Add(Defect::kUndefinedName, where, p.undefined_names);
     a.health.Add(Defect::kUndefinedCommunicator, where, p.undefined_communicators);
     p = {};

@@ -83,6 +83,13 @@ int NumberMpiRanks(std::span<const std::unique_ptr<Stream>> streams,
   return first_rank;
 }
 
+/// Where the problems of a process are; its rank means something to the user only with MPI.
+std::string WhereOf(const Process& p, bool mpi) {
+  if (!mpi) return p.stream->file_name;
+  const std::string process = p.process == 0 ? "" : ", process " + std::to_string(p.process);
+  return "rank " + std::to_string(p.rank) + process + " (" + p.stream->file_name + ")";
+}
+
 }  // namespace
 
 std::vector<Process> NumberProcesses(std::span<const std::unique_ptr<Stream>> streams) {
@@ -112,6 +119,7 @@ std::vector<Process> NumberProcesses(std::span<const std::unique_ptr<Stream>> st
       processes[s].is_host = false;
     }
   }
+  for (Process& p : processes) p.where = WhereOf(p, mpi);
   return processes;
 }
 

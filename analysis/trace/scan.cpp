@@ -29,6 +29,12 @@ constexpr std::uint64_t BytesOf(RecordKind kind) {
       return sizeof(ThreadEnd);
     case RecordKind::kTimeStamp:
       return sizeof(TimeStamp);
+    case RecordKind::kJumpPoint:
+      return sizeof(JumpPoint);
+    case RecordKind::kUnwound:
+      return sizeof(Unwound);
+    case RecordKind::kStackSwitch:
+      return sizeof(StackSwitch);
     default:
       return 0;
   }

@@ -19,7 +19,7 @@
 namespace stipple {
 namespace {
 
-constexpr std::uint64_t kKnownFeatures = 0;
+constexpr auto kKnownFeatures = static_cast<std::uint64_t>(Feature::kStackSwitches);
 
 // A damaged number must not make tables of millions of entries: numbers are given out one after
 // the other, so one far above the count of definitions is damage.

@@ -217,9 +217,9 @@ Trace Trace::Open(const std::string& path, ReadMeter* meter) {
   trace.meter_ = meter;
   trace.ReadStreams(files);
   if (trace.streams_.empty()) trace.health_.Add(Defect::kEmptyArchive, "");
-  for (const auto& stream : trace.streams_) trace.health_.Add(stream->health);
-  trace.clocks_ = CorrectClocks(trace.streams_, trace.health_);
   trace.processes_ = NumberProcesses(trace.streams_);
+  for (const Process& p : trace.processes_) trace.health_.AddAt(p.where, p.stream->health);
+  trace.clocks_ = CorrectClocks(trace.streams_, trace.health_);
   NameCode(trace.streams_, trace.health_);
   trace.UnifyDefinitions();
   trace.PlaceLocations();
@@ -311,7 +311,7 @@ TraceHealth Trace::Health() const {
   TraceHealth health = health_;
   for (const Location& l : locations_) {
     const ScanCounts& counts = CountsOf(l);
-    const std::string& where = ProcessOf(l).stream->file_name;
+    const std::string& where = ProcessOf(l).where;
     health.Add(Defect::kUncommitted, where, counts.uncommitted);
     health.Add(Defect::kOpenRecord, where, counts.open_records);
     health.Add(Defect::kBadRecord, where, counts.bad_records);

@@ -54,6 +54,8 @@ struct Process {
   int process = 0;        // within the rank: 0 is its own, 1.. are further ones (forked, started)
   bool in_world = false;  // an MPI rank whose messages are matched
   bool is_host = false;
+  std::string where;  // of its problems: "rank 3 (computer.4711.1.stream)"; without MPI only the
+                      // stream's file
   std::vector<std::uint32_t> regions;        // of the process -> of the archive
   std::vector<std::uint32_t> names;          // likewise
   std::vector<std::uint32_t> communicators;  // likewise

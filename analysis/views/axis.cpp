@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/views/number.h"
+#include "analysis/stats/number.h"
 #include "analysis/views/palette.h"
 #include "analysis/views/text.h"
 

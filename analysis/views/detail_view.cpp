@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/stats/number.h"
 #include "analysis/views/layout.h"
-#include "analysis/views/number.h"
 #include "analysis/views/palette.h"
 #include "analysis/views/state_runs.h"
 #include "analysis/views/text.h"

@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "analysis/views/number.h"
+#include "analysis/stats/number.h"
 #include "analysis/views/text.h"
 
 namespace stipple {

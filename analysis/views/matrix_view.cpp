@@ -7,8 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "analysis/stats/number.h"
 #include "analysis/views/layout.h"
-#include "analysis/views/number.h"
 #include "analysis/views/palette.h"
 #include "analysis/views/table_access.h"
 #include "analysis/views/text.h"

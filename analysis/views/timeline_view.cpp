@@ -7,9 +7,9 @@
 #include <map>
 #include <vector>
 
+#include "analysis/stats/number.h"
 #include "analysis/views/layout.h"
 #include "analysis/views/mark_names.h"
-#include "analysis/views/number.h"
 #include "analysis/views/palette.h"
 #include "analysis/views/state_runs.h"
 #include "analysis/views/view_list.h"

@@ -103,8 +103,10 @@ std::string Demangled(const std::string& linkage_name) {
 FunctionFacts FactsOf(function* fun) {
   FunctionFacts facts;
   facts.linkage_name = LinkageName(fun->decl);
-  facts.name = Demangled(facts.linkage_name);
-  facts.file = RegionOf(fun).file;
+  facts.name = Demangled(std::string(WithoutCloneSuffix(facts.linkage_name)));
+  const OwnedRegion region = RegionOf(fun);
+  facts.file = region.file;
+  facts.line = region.line;
   facts.in_system_header = DECL_IN_SYSTEM_HEADER(fun->decl);
   // The `main` that gfortran puts around the main program.
   facts.artificial = lang_GNU_Fortran() && facts.linkage_name == "main";

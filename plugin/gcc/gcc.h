@@ -42,7 +42,24 @@
 #include "stringpool.h"
 #include "builtins.h"
 #include "dominance.h"
+#include "cfganal.h"
+#include "cfgcleanup.h"
+#include "tree-ssa-alias.h"
+#include "tree-ssa-operands.h"
+#include "tree-into-ssa.h"
+#include "tree-dfa.h"
+#include "rtl.h"
+#include "memmodel.h"
+#include "tm_p.h"
+#include "calls.h"
+#include "target.h"
 // clang-format on
+
+// As in tree-ssa-live.h, which includes a header that GCC does not install.
+typedef hash_map<int_hash<unsigned int, -1U>, unsigned int> live_vars_map;
+extern vec<bitmap_head> compute_live_vars(struct function*, live_vars_map*);
+extern bitmap live_vars_at_stmt(vec<bitmap_head>&, live_vars_map*, gimple*);
+extern void destroy_live_vars(vec<bitmap_head>&);
 
 namespace stipple::plugin {
 
@@ -67,12 +84,32 @@ gimple* SlotStatement(function* fun, tree token);
 gimple* EnterStatement(tree token_out, tree token_in);
 gimple* LeaveStatement(tree token);
 
+/// Whether the statement is one of those, and the token that goes into it.
+bool IsEnter(gimple* statement);
+bool IsLeave(gimple* statement);
+tree TokenIn(gimple* event);
+
 /// `copy` = `token`, in a way that the compiler cannot see through.
 gimple* OpaqueCopy(tree copy, tree token);
+
+/// To be called when the graph has changed: what GCC has concluded from it is no longer true.
+void ForgetGraph(function* fun);
 
 /// Inserts the events at either position.
 void InstrumentGraph(function* fun);     // after inlining: SSA, exceptions lowered
 void InstrumentSequence(function* fun);  // as written: one GIMPLE_BIND
+
+/// Puts the leaves that only a return separates from a call that GCC will make a jump before that
+/// call, which without them is one. Returns whether the graph changed. Runs just before pass `tailc`.
+bool LeaveBeforeTailCalls(function* fun);
+
+/// Takes the calls that are marked as jumps and have a leave behind them for calls again: GCC would
+/// drop what follows them.
+void KeepLeavesAfterCalls(function* fun);
+
+/// Puts each event behind a test of its token, in a block off the straight line. Returns whether
+/// there was any.
+bool GuardEvents(function* fun);
 
 }  // namespace stipple::plugin
 

@@ -8,70 +8,33 @@
 // exception would pass by the landing pad. Everything that can leave the function by an exception
 // gets an edge to that pad: statements that throw and have no handler, and the resume of a handler
 // that gives the exception back.
+//
+// What is inserted here is straight code; place.cpp finishes it when GCC has optimised the
+// function.
 #include "plugin/gcc/gcc.h"
 
 namespace stipple::plugin {
 namespace {
 
-// Puts `event` into a block of its own, run if `token` is not 0, between the end of `from` and its
-// only successor. Returns the block.
-basic_block InsertGuarded(basic_block from, tree token, gimple* event) {
-  const edge skip = single_succ_edge(from);
-  gimple_stmt_iterator end = gsi_last_bb(from);
-  gsi_insert_after(
-      &end,
-      gimple_build_cond(NE_EXPR, token, build_zero_cst(TREE_TYPE(token)), NULL_TREE, NULL_TREE),
-      GSI_NEW_STMT);
-  const basic_block block = create_empty_bb(from);
-  if (current_loops != nullptr) add_bb_to_loop(block, from->loop_father);
-  gimple_stmt_iterator at = gsi_start_bb(block);
-  gsi_insert_after(&at, event, GSI_NEW_STMT);
-
-  const edge run = make_edge(from, block, EDGE_TRUE_VALUE);
-  run->probability = profile_probability::very_unlikely();
-  block->count = from->count.apply_probability(run->probability);
-  skip->flags = (skip->flags & ~EDGE_FALLTHRU) | EDGE_FALSE_VALUE;
-  skip->probability = run->probability.invert();
-  make_single_succ_edge(block, skip->dest, EDGE_FALLTHRU);
-  return block;
-}
-
+// On an edge of its own: the first block may be the head of a loop.
 tree InsertEnter(function* fun) {
   const tree slot = make_ssa_name(long_long_unsigned_type_node);
-  const tree entered = make_ssa_name(long_long_unsigned_type_node);
   const tree token = make_ssa_name(long_long_unsigned_type_node);
-  // Blocks of their own: the first one may be the head of a loop.
   const basic_block block = split_edge(single_succ_edge(ENTRY_BLOCK_PTR_FOR_FN(fun)));
-  const basic_block join = split_edge(single_succ_edge(block));
   gimple_stmt_iterator at = gsi_start_bb(block);
   gsi_insert_after(&at, SlotStatement(fun, slot), GSI_NEW_STMT);
-  const basic_block event = InsertGuarded(block, slot, EnterStatement(entered, slot));
-  gphi* phi = create_phi_node(token, join);
-  add_phi_arg(phi, slot, find_edge(block, join), UNKNOWN_LOCATION);
-  add_phi_arg(phi, entered, find_edge(event, join), UNKNOWN_LOCATION);
+  gsi_insert_after(&at, EnterStatement(token, slot), GSI_NEW_STMT);
   return token;
 }
 
-// The test is of an opaque copy: knowing from the enter how it comes out, the compiler would make
-// two of the function.
-void InsertLeave(gimple* statement, tree token) {
-  const tree copy = make_ssa_name(long_long_unsigned_type_node);
-  gimple_stmt_iterator at = gsi_for_stmt(statement);
-  gimple* opaque = OpaqueCopy(copy, token);
-  gsi_insert_before(&at, opaque, GSI_SAME_STMT);
-  const basic_block from = split_block(gimple_bb(statement), opaque)->src;
-  InsertGuarded(from, copy, LeaveStatement(copy));
-}
-
 void InsertLeaveAtReturns(function* fun, tree token) {
-  std::vector<gimple*> returns;
   edge exit;
   edge_iterator i;
   FOR_EACH_EDGE(exit, i, EXIT_BLOCK_PTR_FOR_FN(fun)->preds) {
-    gimple* last = last_stmt(exit->src);
-    if (last != nullptr && gimple_code(last) == GIMPLE_RETURN) returns.push_back(last);
+    gimple_stmt_iterator last = gsi_last_bb(exit->src);
+    if (!gsi_end_p(last) && gimple_code(gsi_stmt(last)) == GIMPLE_RETURN)
+      gsi_insert_before(&last, LeaveStatement(token), GSI_SAME_STMT);
   }
-  for (gimple* statement : returns) InsertLeave(statement, token);
 }
 
 bool Escapes(function* fun, gimple* statement) {
@@ -135,16 +98,14 @@ void LeadToPad(gimple* statement, eh_landing_pad pad) {
 
 void InstrumentGraph(function* fun) {
   const std::vector<gimple*> escaping =
-      flag_exceptions ? EscapingStatements(fun) : std::vector<gimple*>();
+      flag_exceptions && options.exceptions ? EscapingStatements(fun) : std::vector<gimple*>();
   const tree token = InsertEnter(fun);
   InsertLeaveAtReturns(fun, token);
   if (!escaping.empty()) {
     const eh_landing_pad pad = InsertLandingPad(fun, token);
     for (gimple* statement : escaping) LeadToPad(statement, pad);
   }
-  free_dominance_info(fun, CDI_DOMINATORS);
-  free_dominance_info(fun, CDI_POST_DOMINATORS);
-  if (current_loops != nullptr) loops_state_set(LOOPS_NEED_FIXUP);
+  ForgetGraph(fun);
 }
 
 }  // namespace stipple::plugin

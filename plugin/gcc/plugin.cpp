@@ -11,6 +11,7 @@ Options options;
 
 namespace {
 
+Selection selection(options);
 bool object_code_needed = false;
 
 bool CanHoldEvents(function* fun) {
@@ -42,7 +43,7 @@ class EventPass : public gimple_opt_pass {
   bool gate(function*) override { return options.position == position; }
 
   unsigned int execute(function* fun) override {
-    if (!CanHoldEvents(fun) || !Select(FactsOf(fun), options).instrument) return 0;
+    if (!CanHoldEvents(fun) || !selection.Select(FactsOf(fun)).instrument) return 0;
     if (position == Position::kSource) {
       InstrumentSequence(fun);
       AddObjectCode();
@@ -53,6 +54,26 @@ class EventPass : public gimple_opt_pass {
     return TODO_update_ssa | TODO_cleanup_cfg;
   }
 };
+
+// Without optimisation there is no such pass, and no need of it.
+class PlacePass : public gimple_opt_pass {
+ public:
+  explicit PlacePass(gcc::context* context) : gimple_opt_pass(kPassData, context) {}
+
+  unsigned int execute(function* fun) override {
+    const bool preserve = flag_optimize_sibling_calls && options.tail_calls_preserved;
+    const bool moved = preserve && LeaveBeforeTailCalls(fun);
+    KeepLeavesAfterCalls(fun);
+    const bool guarded = GuardEvents(fun);
+    if (moved) return TODO_update_ssa | TODO_cleanup_cfg;
+    return guarded ? TODO_update_ssa : 0;
+  }
+};
+
+void RegisterPlacePass(const char* plugin) {
+  register_pass_info info = {new PlacePass(g), "tailc", 1, PASS_POS_INSERT_BEFORE};
+  register_callback(plugin, PLUGIN_PASS_MANAGER_SETUP, nullptr, &info);
+}
 
 template <Position position>
 void Register(const char* plugin, const char* after) {
@@ -67,6 +88,22 @@ void WriteObjectCode(void*, void*) {
   const bool intel = ix86_asm_dialect == ASM_INTEL;
   fprintf(asm_out_file, "%s%.*s%s", intel ? "\t.att_syntax prefix\n" : "", int(ObjectCode().size()),
           ObjectCode().data(), intel ? "\t.intel_syntax noprefix\n" : "");
+}
+
+// As written, functions are selected before link-time optimisation, so the account has to travel
+// the way of the program's own file-scope assembly; after inlining it goes straight into the
+// output.
+void AddAccount(void*, void*) {
+  if (options.position != Position::kSource || selection.Account().empty()) return;
+  const std::string code = AccountCode(selection.Account());
+  symtab->finalize_toplevel_asm(build_string(unsigned(code.size()), code.c_str()));
+}
+
+void FinishAccount(void*, void*) {
+  if (const std::string note = selection.Note(); !note.empty())
+    fprintf(stderr, "%s\n", note.c_str());
+  if (options.position == Position::kSource || selection.Account().empty()) return;
+  fputs(AccountCode(selection.Account()).c_str(), asm_out_file);
 }
 
 const attribute_spec kAttributes[] = {
@@ -111,7 +148,9 @@ bool ReadOptions(const plugin_name_args* plugin) {
     fprintf(stderr, "%s\n", problem->c_str());
     return false;
   }
-  return true;
+  const auto problem = selection.ReadFilterFile();
+  if (problem) fprintf(stderr, "%s\n", problem->c_str());
+  return !problem;
 }
 
 }  // namespace
@@ -123,7 +162,10 @@ __attribute__((visibility("default"))) int plugin_init(plugin_name_args* plugin,
   if (!IsRightCompiler(compiler) || !ReadOptions(plugin)) exit(FATAL_EXIT_CODE);
   Register<Position::kSource>(plugin->base_name, "*warn_unused_result");
   Register<Position::kAfterInlining>(plugin->base_name, "ehdisp");
+  RegisterPlacePass(plugin->base_name);
   register_callback(plugin->base_name, PLUGIN_ATTRIBUTES, RegisterAttributes, nullptr);
   register_callback(plugin->base_name, PLUGIN_FINISH_UNIT, WriteObjectCode, nullptr);
+  register_callback(plugin->base_name, PLUGIN_ALL_IPA_PASSES_START, AddAccount, nullptr);
+  register_callback(plugin->base_name, PLUGIN_FINISH_UNIT, FinishAccount, nullptr);
   return 0;
 }

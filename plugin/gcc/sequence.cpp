@@ -12,6 +12,11 @@ void InstrumentSequence(function* fun) {
 
   gimple_seq leave = nullptr;
   gimple_seq_add_stmt(&leave, LeaveStatement(token));
+  if (!options.exceptions) {  // only where the function returns
+    geh_else* by_way = gimple_build_eh_else(leave, nullptr);
+    leave = nullptr;
+    gimple_seq_add_stmt(&leave, by_way);
+  }
   gimple_seq guarded = nullptr;
   gimple_seq_add_stmt(&guarded, SlotStatement(fun, token));
   gimple_seq_add_stmt(&guarded, EnterStatement(token, token));

@@ -17,6 +17,23 @@ constexpr TemplateSyntax kSyntax = {
     .unique = "%=",
 };
 
+const std::string& EnterText() {
+  static const std::string text = EnterCode(kSyntax);
+  return text;
+}
+
+const std::string& LeaveText() {
+  static const std::string text = LeaveCode(kSyntax);
+  return text;
+}
+
+// By content: with link-time optimisation another process made the statement.
+bool HasText(gimple* statement, const std::string& text) {
+  const auto* assembly = dyn_cast<gasm*>(statement);
+  return assembly != nullptr && gimple_asm_volatile_p(assembly) &&
+         text == gimple_asm_string(assembly);
+}
+
 tree Text(std::string_view text) { return build_string(unsigned(text.size()), text.data()); }
 
 tree Operand(const char* constraint, tree value) {
@@ -48,10 +65,16 @@ gimple* SlotStatement(function* fun, tree token) {
 }
 
 gimple* EnterStatement(tree token_out, tree token_in) {
-  return Statement(EnterCode(kSyntax), token_out, token_in, true);
+  return Statement(EnterText(), token_out, token_in, true);
 }
 
-gimple* LeaveStatement(tree token) { return Statement(LeaveCode(kSyntax), NULL_TREE, token, true); }
+gimple* LeaveStatement(tree token) { return Statement(LeaveText(), NULL_TREE, token, true); }
+
+bool IsEnter(gimple* statement) { return HasText(statement, EnterText()); }
+
+bool IsLeave(gimple* statement) { return HasText(statement, LeaveText()); }
+
+tree TokenIn(gimple* event) { return TREE_VALUE(gimple_asm_input_op(as_a<gasm*>(event), 0)); }
 
 gimple* OpaqueCopy(tree copy, tree token) { return Statement("", copy, token, false); }
 

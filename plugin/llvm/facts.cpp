@@ -73,8 +73,10 @@ bool IsSystemPath(llvm::StringRef file) {
 FunctionFacts FactsOf(const llvm::Function& function) {
   FunctionFacts facts;
   facts.linkage_name = function.getName().str();
-  facts.name = llvm::demangle(facts.linkage_name);
-  facts.file = RegionOf(function).file;
+  const OwnedRegion region = RegionOf(function);
+  facts.name = llvm::demangle(region.name);
+  facts.file = region.file;
+  facts.line = region.line;
   facts.in_system_header = IsSystemPath(facts.file);
   facts.has_loop = HasLoop(function);
   facts.wish = WishOf(function);

@@ -5,7 +5,9 @@
 
 #include <string>
 
+#include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/IR/Function.h"
+#include "llvm/IR/Instructions.h"
 #include "plugin/event_code.h"
 #include "plugin/select/select.h"
 
@@ -23,8 +25,25 @@ struct OwnedRegion {
 };
 OwnedRegion RegionOf(const llvm::Function& function);
 
-/// Inserts enter, and leave at each exit: return, exception, and before a musttail call.
-void Instrument(llvm::Function& function);
+/// Calls in front of which their function has left already.
+using TailCalls = llvm::SmallPtrSet<const llvm::CallInst*, 4>;
+
+/// Inserts enter, and leave at each return and before each musttail call. The answer is the token.
+llvm::Value* InsertEvents(llvm::Function& function);
+
+/// Inserts a leave where an exception leaves the function, unless by one of `tail_calls`.
+void InsertLeaveForExceptions(llvm::Function& function, llvm::Value* token,
+                              const TailCalls& tail_calls);
+
+/// Puts the leaves that follow a call in front of it where code generation can make the call a
+/// jump, which it could not with a leave behind it.
+TailCalls LeaveBeforeTailCalls(llvm::Function& function);
+
+/// Tests each token before its event, so that the event can be moved out of the straight line.
+void GuardEvents(llvm::Function& function);
+
+/// Whether the instruction is a leave.
+bool IsLeave(const llvm::Instruction& instruction);
 
 }  // namespace stipple::plugin
 

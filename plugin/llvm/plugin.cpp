@@ -16,12 +16,19 @@ llvm::cl::list<std::string> given_options("stipple-", llvm::cl::Prefix,
                                           llvm::cl::desc("NAME=VALUE, an option of stipple"),
                                           llvm::cl::value_desc("NAME=VALUE"));
 
+// Both positions read the options; what is wrong with them is said once.
+void Say(const std::string& problem, llvm::LLVMContext& context) {
+  static bool said = false;
+  if (!said) context.emitError(problem);
+  said = true;
+}
+
 bool ReadOptions(Options& options, llvm::LLVMContext& context) {
   for (const std::string& given : given_options) {
     const std::size_t equals = given.find('=');
     const std::string value = equals == std::string::npos ? "" : given.substr(equals + 1);
     if (const auto problem = SetOption(options, given.substr(0, equals), value)) {
-      context.emitError(*problem);
+      Say(*problem, context);
       return false;
     }
   }
@@ -42,39 +49,65 @@ bool CanHoldEvents(const llvm::Function& function) {
          !function.hasFnAttribute(llvm::Attribute::Naked) && !IsUnsplitCoroutine(function);
 }
 
+void AddAccount(Selection& selection, llvm::Module& module) {
+  if (const std::string note = selection.Note(); !note.empty()) llvm::errs() << note << '\n';
+  if (!selection.Account().empty()) module.appendModuleInlineAsm(AccountCode(selection.Account()));
+}
+
+// Both positions come here; as written (`instrument=source`) the early one inserts and the late one
+// finishes. -O0 makes no call a jump.
 class EventPass : public llvm::PassInfoMixin<EventPass> {
  public:
-  explicit EventPass(Position position) : position_(position) {}
+  EventPass(Position position, llvm::OptimizationLevel level)
+      : position_(position), optimises_(level != llvm::OptimizationLevel::O0) {}
 
   static bool isRequired() { return true; }  // at -O0 too
 
   llvm::PreservedAnalyses run(llvm::Module& module, llvm::ModuleAnalysisManager&) {
     Options options;
-    if (!ReadOptions(options, module.getContext()) || options.position != position_)
+    const bool late = position_ == Position::kAfterInlining;
+    if (!ReadOptions(options, module.getContext()) || (!late && options.position != position_))
       return llvm::PreservedAnalyses::all();
+    const bool inserts = options.position == position_;
+    Selection selection(options);
+    if (inserts) {
+      if (const auto problem = selection.ReadFilterFile()) {
+        Say(*problem, module.getContext());
+        return llvm::PreservedAnalyses::all();
+      }
+    }
+    const bool preserve_tail_calls = optimises_ && options.tail_calls_preserved;
     bool changed = false;
     for (llvm::Function& function : module) {
-      if (!CanHoldEvents(function) || !Select(FactsOf(function), options).instrument) continue;
-      Instrument(function);
-      changed = true;
+      TailCalls tail_calls;
+      if (!inserts) {
+        if (preserve_tail_calls) LeaveBeforeTailCalls(function);
+      } else if (CanHoldEvents(function) && selection.Select(FactsOf(function)).instrument) {
+        llvm::Value* token = InsertEvents(function);
+        if (late && preserve_tail_calls) tail_calls = LeaveBeforeTailCalls(function);
+        if (options.exceptions) InsertLeaveForExceptions(function, token, tail_calls);
+        changed = true;
+      }
+      if (late) GuardEvents(function);
     }
-    if (!changed) return llvm::PreservedAnalyses::all();
-    module.appendModuleInlineAsm({ObjectCode().data(), ObjectCode().size()});
+    if (inserts) AddAccount(selection, module);
+    if (changed) module.appendModuleInlineAsm({ObjectCode().data(), ObjectCode().size()});
     return llvm::PreservedAnalyses::none();
   }
 
  private:
   Position position_;
+  bool optimises_;
 };
 
 void AddPasses(llvm::PassBuilder& builder) {
   builder.registerPipelineStartEPCallback(
-      [](llvm::ModulePassManager& manager, llvm::OptimizationLevel) {
-        manager.addPass(EventPass(Position::kSource));
+      [](llvm::ModulePassManager& manager, llvm::OptimizationLevel level) {
+        manager.addPass(EventPass(Position::kSource, level));
       });
   builder.registerOptimizerLastEPCallback(
-      [](llvm::ModulePassManager& manager, llvm::OptimizationLevel, auto...) {
-        manager.addPass(EventPass(Position::kAfterInlining));
+      [](llvm::ModulePassManager& manager, llvm::OptimizationLevel level, auto...) {
+        manager.addPass(EventPass(Position::kAfterInlining, level));
       });
 }
 

@@ -12,15 +12,34 @@ bool SetList(Options& options, std::string_view value) {
   return true;
 }
 
+bool SetFile(Options& options, std::string_view value) {
+  options.filter_file = value;
+  return !value.empty();
+}
+
 bool SetThreshold(Options& options, std::string_view value) {
   const char* end = value.data() + value.size();
   const auto [stop, error] = std::from_chars(value.data(), end, options.instruction_threshold);
   return error == std::errc{} && stop == end;
 }
 
+template <bool Options::*choice>
+bool SetSwitch(Options& options, std::string_view value) {
+  options.*choice = value == "on";
+  return value == "on" || value == "off";
+}
+
+bool SetIgnoreLoops(Options& options, std::string_view value) {
+  return SetSwitch<&Options::ignore_loops>(options, value.empty() ? "on" : value);
+}
+
+bool SetTailCalls(Options& options, std::string_view value) {
+  options.tail_calls_preserved = value == "preserve";
+  return value == "preserve" || value == "exit-after";
+}
+
 bool SetPosition(Options& options, std::string_view value) {
-  if (value == "after-inlining") options.position = Position::kAfterInlining;
-  if (value == "source") options.position = Position::kSource;
+  options.position = value == "source" ? Position::kSource : Position::kAfterInlining;
   return value == "after-inlining" || value == "source";
 }
 
@@ -28,13 +47,31 @@ struct OptionSpec {
   std::string_view name;
   bool (*set)(Options&, std::string_view);  // false: a bad value
   std::string_view values;
+  std::string_view initial;
+  std::string_view meaning;
 };
 constexpr OptionSpec kOptions[] = {
-    {"exclude-function-list", SetList<&Options::exclude_functions>, "NAME,NAME,..."},
-    {"exclude-file-list", SetList<&Options::exclude_files>, "NAME,NAME,..."},
-    {"include-function-list", SetList<&Options::include_functions>, "NAME,NAME,..."},
-    {"instruction-threshold", SetThreshold, "a number of instructions"},
-    {"instrument", SetPosition, "after-inlining or source"},
+    {"exclude-function-list", SetList<&Options::exclude_functions>, "NAME,NAME,...", "",
+     "leave out functions whose demangled or linkage name contains one of these; `\\,` is a comma"},
+    {"exclude-file-list", SetList<&Options::exclude_files>, "NAME,NAME,...", "",
+     "leave out functions of files whose path contains one of these"},
+    {"include-function-list", SetList<&Options::include_functions>, "NAME,NAME,...", "",
+     "take these even if they are short or of a system header or an excluded file"},
+    {"filter-file", SetFile, "FILE", "", "rules in Score-P's syntax, see below"},
+    {"instruction-threshold", SetThreshold, "a number of instructions", "20",
+     "leave out functions shorter than this that have neither loop nor call"},
+    {"ignore-loops", SetIgnoreLoops, "on or off, or no value for on", "off",
+     "a loop does not save a short function from being left out"},
+    {"system-headers", SetSwitch<&Options::system_headers>, "on or off", "off",
+     "take functions of system headers and of namespace std like any other"},
+    {"exceptions", SetSwitch<&Options::exceptions>, "on or off", "on",
+     "record the leave of a function that an exception leaves; off saves its landing pad"},
+    {"tail-calls", SetTailCalls, "preserve or exit-after", "preserve",
+     "preserve: a tail call stays a jump, the leave comes before it; exit-after: it becomes a "
+     "call, "
+     "the leave comes after it"},
+    {"instrument", SetPosition, "after-inlining or source", "after-inlining",
+     "events for functions as they are after inlining, or for each as it is written"},
 };
 
 std::string KnownNames() {
@@ -73,6 +110,16 @@ std::optional<std::string> SetOption(Options& options, std::string_view name,
            "'; it takes " + std::string(option.values);
   }
   return "stipple: unknown option '" + std::string(name) + "'; known are " + KnownNames();
+}
+
+std::string OptionTable() {
+  std::string table = "| option | values | default | meaning |\n|---|---|---|---|\n";
+  for (const OptionSpec& option : kOptions) {
+    table += "| `" + std::string(option.name) + "` | " + std::string(option.values) + " | " +
+             std::string(option.initial.empty() ? "none" : option.initial) + " | " +
+             std::string(option.meaning) + " |\n";
+  }
+  return table;
 }
 
 }  // namespace stipple::plugin

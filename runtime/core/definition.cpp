@@ -54,6 +54,7 @@ void WriteChunkHeader(const Process& process, char* chunk, const ChunkHeader& he
   std::atomic_ref<std::uint64_t>(place->magic).store(kChunkMagic, std::memory_order_release);
 }
 
+// NOLINTNEXTLINE(readability-function-size): three are sizes of what stands before them.
 bool Define(Process& process, const void* record, RecordKind kind, std::size_t bytes,
             const char* text, std::size_t text_bytes, const char* more, std::size_t more_bytes) {
   if (process.state.load(std::memory_order_relaxed) == State::kStopped) return false;

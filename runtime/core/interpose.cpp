@@ -49,13 +49,13 @@ void CopyArguments(char** to, const char* first, va_list rest) {
 }  // namespace
 
 // Puts the variable arguments behind `first` into `arguments`, on the stack.
-#define STIPPLE_GATHER(arguments, first)                                                         \
-  va_list stipple_list;                                                                          \
-  va_start(stipple_list, first);                                                                 \
-  const std::size_t stipple_count = CountArguments(first, stipple_list);                         \
-  va_end(stipple_list);                                                                          \
-  auto** arguments = static_cast<char**>(__builtin_alloca((stipple_count + 1) * sizeof(char*))); \
-  va_start(stipple_list, first);                                                                 \
+#define STIPPLE_GATHER(arguments, first)                                                          \
+  va_list stipple_list;                                                                           \
+  va_start(stipple_list, first);                                                                  \
+  const std::size_t stipple_count = CountArguments(first, stipple_list);                          \
+  va_end(stipple_list); /* NOLINTNEXTLINE(bugprone-macro-parentheses): a name that is declared */ \
+  auto** arguments = static_cast<char**>(__builtin_alloca((stipple_count + 1) * sizeof(char*)));  \
+  va_start(stipple_list, first);                                                                  \
   CopyArguments(arguments, first, stipple_list)
 
 #define STIPPLE_EXPORT __attribute__((visibility("default")))

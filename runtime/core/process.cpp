@@ -178,6 +178,7 @@ int BeginFile(Process& process, const char* archive) {
     return error;
   }
   WriteFileHeader(header, process, realtime_ns, start, system);
+  process.header = reinterpret_cast<FileHeader*>(header);
   return 0;
 }
 
@@ -248,6 +249,14 @@ void StopProcess(Process& process, int error) {
   place->events = process.lost.load(std::memory_order_relaxed);
   place->error = error;
   header.store(MakeHeader(Loss::kKind, kWords, true), std::memory_order_release);
+}
+
+void NoteFeature(Feature feature) {
+  Process* process = this_process.load(std::memory_order_acquire);
+  if (process == nullptr || process->header == nullptr) return;
+  const auto bit = static_cast<std::uint64_t>(feature);
+  std::atomic_ref<std::uint64_t> features(process->header->features);
+  if ((features.load(std::memory_order_relaxed) & bit) == 0) features.fetch_or(bit);
 }
 
 void NoteEnd(Ending how, int status) {

@@ -49,10 +49,12 @@ struct Process {
   int error;  // errno that stopped the recording
   std::uint32_t said_line;
   std::uint32_t said_counts;
+  std::uint32_t watched;    // a thread of ours watches for silent ones
   std::uint64_t stop_ms;    // after begin
   std::uint32_t unloading;  // calls of dlclose that are under way
   std::uint32_t reserved;
   StreamFile file;
+  FileHeader* header;  // in the file, mapped
   DefinitionChunk definitions;
   Thread* threads;  // all that ever recorded, newest first
   Thread* spare;    // never used
@@ -71,6 +73,9 @@ Process* BeginProcess();
 
 /// Ends recording for good after `error`. The lock is held.
 void StopProcess(Process& process, int error);
+
+/// Says in the stream's header that a reader must know `feature`.
+void NoteFeature(Feature feature);
 
 /// Notes how the process ends; later calls replace what earlier ones said.
 void NoteEnd(Ending how, int status);

@@ -67,6 +67,7 @@ stipple_slow:
 	movq	%rcx, 560(%rsp)
 	movq	%rcx, 568(%rsp)
 	xsave64	(%rsp)
+	ldmxcsr	.Lmxcsr(%rip)			/* the program may trap what we compute */
 	call	stipple_slow_event
 	movl	%eax, %ebx
 	movl	stipple_save_mask(%rip), %eax
@@ -101,6 +102,7 @@ stipple_slow:
 	.cfi_offset rbp, -144
 	.cfi_offset rbx, -152
 	fxsave64	(%rsp)
+	ldmxcsr	.Lmxcsr(%rip)
 	call	stipple_slow_event
 	movl	%eax, %ebx
 	fxrstor64	(%rsp)
@@ -157,5 +159,10 @@ stipple_slow:
 	jmp	.Lgeneral
 	.cfi_endproc
 	.size	stipple_slow, . - stipple_slow
+
+	.section .rodata
+	.p2align 2
+.Lmxcsr:
+	.long	0x1f80				/* as at the begin of a program: all masked, to nearest */
 
 	.section .note.GNU-stack, "", @progbits

@@ -18,6 +18,7 @@
 #include "runtime/core/region.h"
 #include "runtime/core/save_area.h"
 #include "runtime/core/settings.h"
+#include "runtime/core/silence.h"
 #include "runtime/core/skipped.h"
 #include "runtime/core/switch.h"
 
@@ -99,7 +100,8 @@ Thread* NewThread() {
     thread->next_bytes = kGranuleBytes;
     thread->control.clock_mask = ReadSettings().clock_mask;
     thread->next = process->threads;
-    process->threads = thread;
+    // The watch reads the list without the lock.
+    std::atomic_ref<Thread*>(process->threads).store(thread, std::memory_order_release);
     DefineThisLocation(*process, *thread);
   }
   stipple_stream = &thread->control;
@@ -114,9 +116,20 @@ void Commit(EventWord* place, EventWord word) {
 }
 
 /// A record that did not fit leaves the chunk's last words zero for good.
-void NoteWaste(Thread& thread, std::uint64_t slot) {
+void NoteWaste(Thread& thread, std::uint64_t slot, std::uint64_t bytes) {
   const auto begin = reinterpret_cast<std::uint64_t>(thread.chunk);
-  if (slot > begin && slot < thread.chunk_end) thread.waste = slot;
+  if (slot > begin && slot < thread.chunk_end && slot + bytes > thread.chunk_end)
+    thread.waste = slot;
+}
+
+/// Takes the thread's next chunk and decides whether its events step; false if recording has stopped.
+bool TakeNextChunk(Process& process, Thread& thread, std::uint64_t bytes, std::uint64_t ticks) {
+  const bool slow =
+      thread.chunk == nullptr ||
+      ticks - reinterpret_cast<const ChunkHeader*>(thread.chunk)->ticks > kSlowTicks;
+  if (!NextChunk(process, thread, bytes, ticks)) return false;
+  if (slow) BeginStepping(thread, ticks);
+  return true;
 }
 
 /// Reserves on the slow path: begins the process's or thread's stream, takes a chunk. Null: lost.
@@ -126,12 +139,15 @@ EventWord* ReserveSlowly(std::uint64_t bytes, std::uint64_t ticks) {
   if (thread == nullptr) thread = NewThread();
   if (thread == nullptr) return nullptr;
   Process* process = ThisProcess();
-  thread->control.end = thread->chunk_end;
+  WatchSilence(*process, ticks);
+  if (EventWord* place = TakeForced(*thread, bytes, ticks)) return place;
   for (int attempt = 0; attempt < 2; ++attempt) {
+    if (thread->step != 0)
+      if (EventWord* place = Step(*thread, bytes, ticks)) return place;
     const std::uint64_t slot = Reserve(thread->control, bytes);
     if (slot + bytes <= thread->chunk_end) return WordAt(slot);
-    NoteWaste(*thread, slot);
-    if (!NextChunk(*process, *thread, bytes, ticks)) break;
+    NoteWaste(*thread, slot, bytes);
+    if (!TakeNextChunk(*process, *thread, bytes, ticks)) break;
   }
   return nullptr;
 }
@@ -145,11 +161,13 @@ EventWord* ReserveRecord(std::uint64_t bytes) {
   if (ReadSettings().archive == nullptr) return nullptr;
   const std::uint64_t ticks = ReadTicks();
   const Inside inside;
-  if (Thread* thread = KnownThread()) NoteWaste(*thread, slot);
+  if (Thread* thread = KnownThread()) NoteWaste(*thread, slot, bytes);
   EventWord* place = inside.again() ? nullptr : ReserveSlowly(bytes, ticks);
   if (place == nullptr) CountLost(1);
   return place;
 }
+
+}  // namespace
 
 void AppendRecord(const void* record, RecordKind kind, std::size_t bytes) {
   EventWord* place = ReserveRecord(bytes);
@@ -158,6 +176,8 @@ void AppendRecord(const void* record, RecordKind kind, std::size_t bytes) {
   CopyBytes(place + 1, static_cast<const EventWord*>(record) + 1, bytes - 8);
   Commit(place, MakeHeader(kind, bytes / 8, true));
 }
+
+namespace {
 
 /// Events of a visit that was entered while recording was switched off are none.
 std::uint64_t AppendEvent(std::uint32_t region, bool leave) {
@@ -173,12 +193,18 @@ std::uint64_t AppendEvent(std::uint32_t region, bool leave) {
   return ticks;
 }
 
-/// The last round of key destructors: what other keys' destructors do until then still belongs to
-/// the thread. Events after it still find the stream.
+/// In the first round of key destructors the thread's function has been left, by whatever way. The
+/// last round ends the thread: what other keys' destructors do until then still belongs to it. Events
+/// after it still find the stream.
 void EndThread(void* pointer) {
   auto* thread = static_cast<Thread*>(pointer);
   // Zeroed: a forked child's, which has not recorded.
   if (stipple_stream != &thread->control || thread->tid == 0) return;
+  if (thread->end_rounds == 0) {
+    Unwound left{};
+    left.ticks = ReadTicks();
+    AppendRecord(&left, Unwound::kKind, sizeof left);
+  }
   if (++thread->end_rounds < PTHREAD_DESTRUCTOR_ITERATIONS) {
     pthread_setspecific(end_key, thread);
     return;

@@ -22,14 +22,19 @@ struct Thread {
   std::uint64_t lost;
   std::uint64_t waste;     // words from here to the chunk's end are zero for good; 0: none
   std::uint64_t seen_cur;  // at the watch's last round
+  // silence.h
+  std::uint64_t step;        // while every event takes the slow path: the next free slot; else 0
+  std::uint64_t step_begin;  // ticks when the last kStepEvents began
+  std::uint64_t last_ticks;  // of the last event
+  std::uint32_t steps;
   Thread* next;
   std::uint32_t tid;
   std::uint32_t index;
   std::uint32_t end_rounds;  // rounds of key destructors seen
   std::uint32_t ended;
 };
-static_assert(sizeof(Thread) <= 128);
-inline constexpr std::size_t kThreadBytes = 128;  // own cache lines
+inline constexpr std::size_t kThreadBytes = 192;  // own cache lines
+static_assert(sizeof(Thread) <= kThreadBytes);
 
 /// Takes `bytes` of the stream in one instruction; they are valid if they end at or before `end`.
 inline std::uint64_t Reserve(stipple_control& control, std::uint64_t bytes) {
@@ -49,6 +54,9 @@ std::int64_t ControlSlotOffset();
 
 /// Writes the visits that `process`'s threads counted only. The lock is held.
 void WriteVisitCounts(Process& process);
+
+/// Appends an event record (format.h), whether recording is switched on or off; its header is set here.
+void AppendRecord(const void* record, RecordKind kind, std::size_t bytes);
 
 /// Counts events that could not be recorded.
 void CountLost(std::uint64_t events);

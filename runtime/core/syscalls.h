@@ -11,6 +11,7 @@
 
 namespace stipple {
 
+// NOLINTNEXTLINE(readability-function-size): a call of the kernel has six arguments.
 inline long Syscall(long number, long a = 0, long b = 0, long c = 0, long d = 0, long e = 0,
                     long f = 0) {
   long result;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstddef>
 
 #include "analysis/stats/analysis.h"
@@ -293,6 +294,21 @@ TEST(Trace, WhatCannotBeCountedIsNotCalledNothing) {
   EXPECT_FALSE(Trace::Open(archive.path()).Health().LostUncounted());
   archive.AddBytes("2", "");
   EXPECT_TRUE(Trace::Open(archive.path()).Health().LostUncounted());
+}
+
+TEST(Trace, ProblemsOfARankNameIt) {
+  StreamWriter s = Program();
+  s.World(1, 2);
+  s.NewChunk(1000);
+  s.Enter(1, 2000);  // and no end
+  TemporaryArchive archive;
+  archive.Add(s);
+  const TraceHealth health = Trace::Open(archive.path()).Health();
+  const auto problem =
+      std::ranges::find(health.problems(), Defect::kUnclosedProcess, &Problem::defect);
+  ASSERT_NE(problem, health.problems().end());
+  EXPECT_EQ(TextOf(*problem),
+            "rank 1 (computer.1.1.stream): 1 process did not end in order (killed?)");
 }
 
 TEST(Trace, MissingRankIsReported) {

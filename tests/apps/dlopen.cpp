@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
-// A library comes and goes three times; its functions are events each time.
+// A library comes and goes three times, or as often as the second argument says; its functions are
+// events each time.
 #include <dlfcn.h>
+
+#include <cstdlib>
 
 #include "shared.h"
 
@@ -11,8 +14,9 @@
   return dlclose(library);
 }
 
-int main(int, char** argv) {
+int main(int argc, char** argv) {
+  const int times = argc > 2 ? std::atoi(argv[2]) : 3;
   Shared::Both("program");
-  for (int i = 0; i < 3; ++i)
+  for (int i = 0; i < times; ++i)
     if (Open(argv[1]) != 0) return 1;
 }

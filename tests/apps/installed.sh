@@ -13,11 +13,12 @@ fail() { echo "FAILED: $*" >&2; exit 1; }
 "$cmake" --install "$build" --prefix "$prefix" >"$work/log" || { cat "$work/log"; fail "install"; }
 for file in bin/stipple bin/raytracer include/stipple/abi.h include/stipple/format.h include/stipple/user.h \
   lib/stipple/libstipple.so lib/stipple/libstipple.a lib/stipple/libstipple-mpi.so lib/stipple/libstipple-views.so \
-  lib/cmake/stipple/stippleConfig.cmake share/doc/stipple/stipple-run.md; do
+  lib/cmake/stipple/stippleConfig.cmake lib/pkgconfig/stipple.pc bin/stipple-cc bin/stipple-c++ bin/stipple-fc \
+  bin/stipple-mpicc bin/stipple-mpicxx share/doc/stipple/plugin-options.md share/doc/stipple/stipple-run.md; do
   [ -f "$prefix/$file" ] || fail "$file is not installed"
 done
 for file in "$prefix"/bin/* "$prefix"/lib/stipple/*.so "$prefix"/lib/stipple/*/*.so; do
-  ! readelf -dW "$file" | grep -E 'R(UN)?PATH' | grep -vF '[$ORIGIN]' || fail "$file looks for libraries elsewhere"
+  ! readelf -dW "$file" 2>/dev/null | grep -E 'R(UN)?PATH' | grep -vF '[$ORIGIN]' || fail "$file looks for libraries elsewhere"
 done
 
 cd "$work"
@@ -64,16 +65,89 @@ make_and_run app-static $kept -static $("$stipple" flags --link --static ${kept%
 "$stipple" report app-static.stipple -o static.html >out || fail "report"
 grep -q '<svg' static.html || fail "the report has no picture"
 
+# As find_package() and pkg-config give it: one project of C, C++ and, with GCC, Fortran.
 mkdir project
 cat >project/CMakeLists.txt <<'END'
 cmake_minimum_required(VERSION 3.25)
-project(user LANGUAGES C)
-find_package(stipple REQUIRED)
-add_executable(user ../app.c)
-stipple_instrument(user)
+project(user LANGUAGES C CXX)
+if(FORTRAN)
+  enable_language(Fortran)
+endif()
+find_package(stipple 0.1 REQUIRED)
+add_executable(user ../app.c other.cpp)
+target_link_libraries(user PRIVATE stipple::instrument)
+add_executable(by_function ../app.c other.cpp)
+stipple_instrument(by_function)
+add_executable(static ../app.c other.cpp)
+target_link_libraries(static PRIVATE stipple::instrument stipple::static_runtime)
+target_link_options(static PRIVATE -static)
+add_executable(lto ../app.c other.cpp)
+target_link_libraries(lto PRIVATE stipple::instrument)
+set_target_properties(lto PROPERTIES INTERPROCEDURAL_OPTIMIZATION ${LTO})
+if(FORTRAN)
+  add_executable(fortran main.f90)
+  target_link_libraries(fortran PRIVATE stipple::instrument)
+endif()
 END
-CC=$(command -v "${kept%% *}") "$cmake" -S project -B project/build -DCMAKE_PREFIX_PATH="$prefix" >"$work/log" 2>&1 &&
-  "$cmake" --build project/build >>"$work/log" 2>&1 || { cat "$work/log"; fail "find_package(stipple)"; }
-"$stipple" run -o user.stipple -- project/build/user 2>err || { cat err; fail "run user"; }
-"$stipple" print --canonical user.stipple | grep -qx 'enter main' || fail "stipple_instrument() recorded nothing"
-echo "find_package(stipple) instruments"
+echo 'extern "C" int Other(int x) { return x > 0 ? Other(x - 1) + 1 : 0; }' >project/other.cpp
+printf 'program main\n  print *, "x"\nend program\n' >project/main.f90
+configure() { # C_COMPILER CXX_COMPILER ARGUMENTS...
+  local c=$1 cxx=$2
+  shift 2
+  rm -rf project/build
+  CC=$c CXX=$cxx "$cmake" -S project -B project/build -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_BUILD_TYPE=Release "$@"
+}
+build_project() { # NAME C_COMPILER CXX_COMPILER ARGUMENTS...
+  local name=$1 program
+  shift
+  configure "$@" >"$work/log" 2>&1 && "$cmake" --build project/build >>"$work/log" 2>&1 || { cat "$work/log"; fail "$name"; }
+  for program in user by_function static lto; do
+    "$stipple" run --overwrite -o user.stipple -- project/build/$program 2>err || { cat err; fail "$name: $program"; }
+    "$stipple" print --canonical user.stipple | grep -qx 'enter main' || fail "$name: $program recorded nothing"
+  done
+  echo "find_package(stipple) instruments with $name"
+}
+tested=
+for plugin in "$prefix"/lib/stipple/*/stipple.so; do
+  folder=$(basename "$(dirname "$plugin")")
+  case $folder in
+    gcc-*) c=gcc-${folder#gcc-} cxx=g++-${folder#gcc-} lto=ON ;;
+    llvm-*) c=clang-${folder#llvm-} cxx=clang++-${folder#llvm-} lto=OFF ;;
+  esac
+  command -v "$c" >/dev/null && command -v "$cxx" >/dev/null || continue
+  case " $tested " in *" ${folder%-*} "*) continue ;; esac  # one of each kind: the others differ by their number
+  tested="$tested ${folder%-*}"
+  if [ "${folder%-*}" = gcc ] && command -v "gfortran-${folder#gcc-}" >/dev/null; then
+    FC=gfortran-${folder#gcc-} build_project $folder $c $cxx -DLTO=ON -DFORTRAN=ON
+    readelf -SW project/build/fortran | grep -q stipple_desc || fail "Fortran is not instrumented"
+  else
+    build_project $folder $c $cxx -DLTO=$lto
+  fi
+  mv "$prefix/lib/stipple/$folder" "$work/away"
+  configure $c $cxx -DLTO=OFF >"$work/log" 2>&1 && fail "$folder: a compiler without plugin is accepted"
+  grep -q "stipple has no plugin for the C compiler" "$work/log" || { cat "$work/log"; fail "no clear message"; }
+  mv "$work/away" "$prefix/lib/stipple/$folder"
+done
+
+# A wrapper as the project's compiler.
+cat >project/CMakeLists.txt <<'END'
+cmake_minimum_required(VERSION 3.25)
+project(user LANGUAGES C)
+add_executable(user ../plain.c)
+END
+sed '/stipple/d' app.c >plain.c
+STIPPLE_CC=${kept%% *} configure "$prefix/bin/stipple-cc" none >"$work/log" 2>&1 &&
+  STIPPLE_CC=${kept%% *} "$cmake" --build project/build >>"$work/log" 2>&1 || { cat "$work/log"; fail "CC=stipple-cc cmake"; }
+readelf -SW project/build/user | grep -q stipple_desc || fail "CC=stipple-cc instruments nothing"
+echo "CC=stipple-cc cmake instruments"
+
+if command -v pkg-config >/dev/null; then
+  export PKG_CONFIG_PATH=$prefix/lib/pkgconfig
+  folder=$(pkg-config --variable=compilers stipple | cut -d' ' -f1)
+  flags=$(pkg-config --variable="${folder/-/_}_flags" stipple)
+  plugin=$(sed 's/ .*//; s/-fplugin=//' <<<"$flags")
+  [ -f "$plugin" ] || fail "pkg-config names $plugin"
+  [ -f "$(pkg-config --cflags stipple | sed 's/-I//; s/ *$//')/stipple/user.h" ] || fail "pkg-config --cflags"
+  pkg-config --static --libs stipple | grep -q -- '-lstipple' || fail "pkg-config --static --libs"
+  echo "pkg-config knows $folder"
+fi

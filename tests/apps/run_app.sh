@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # Builds one app with and without the plugin and holds it to three promises:
 #   1. without a runtime the instrumented program prints and returns what the plain one does;
-#   2. so it does while it is recorded, and every leave is that of the innermost open enter;
+#   2. so it does while it is recorded, and every leave is that of the innermost open enter of its context;
 #   3. the events of the functions named in the golden text are that text. Other functions are free.
 #
 #   run_app.sh [--update] [--status N] [--stipple TOOL | --recorder LIBRARY] --work FOLDER
@@ -74,16 +74,22 @@ else
 fi
 cmp "$work/plain/out" "$work/traced/out" || fail "output differs while recorded"
 
-awk '/^location/ { depth = 0 }
-     /^enter/ { open[++depth] = substr($0, 7) }
-     /^leave/ { if (depth == 0 || open[depth] != substr($0, 7)) { print "unmatched: " $0; bad = 1 }
-                else --depth }
-     END { exit bad }' "$work/events" || fail "a leave without its enter"
+awk 'NR == FNR { if ($1 == "unclosed") expected[substr($0, 10)] = 1; next }
+     /^location/ { delete depth; context = 0 }
+     /^context/ { context = $2 }
+     /^enter/ { open[context, ++depth[context]] = substr($0, 7) }
+     /^unclosed/ && !(substr($0, 10) in expected) { print; bad = 1 }
+     /^(leave|unwound|unclosed)/ {
+       name = $0
+       sub(/^[a-z]* /, "", name)
+       if (depth[context] == 0 || open[context, depth[context]] != name) { print "unmatched: " $0; bad = 1 }
+       else --depth[context] }
+     END { exit bad }' "$golden" "$work/events" || fail "a leave without its enter"
 
 awk 'NR == FNR { if ($1 == "enter") compared[substr($0, 7)] = 1; next }
      /^location/ { heading = $0; next }
      /^thread end/ { next }  # the last word of a detached thread may come too late
-     /^(enter|leave) / && !(substr($0, 7) in compared) { next }
+     /^(enter|leave|unwound|unclosed) / { name = $0; sub(/^[a-z]* /, "", name); if (!(name in compared)) next }
      { if (heading != "") print heading; heading = ""; print }' "$golden" "$work/events" \
   >"$work/compared"
 if [[ -n $update ]]; then

@@ -117,6 +117,50 @@ case $check in
     grep -q "stipple: option instrument cannot be 'before'; it takes after-inlining or source" \
       message || { cat message >&2; fail "no clear message"; }
     ;;
+  filter) # the last rule that matches decides, and a rule that names a function brings in a trivial one
+    printf '%s\n' SCOREP_REGION_NAMES_BEGIN 'EXCLUDE *' 'INCLUDE S?nk # a leaf' SCOREP_REGION_NAMES_END >app.filter
+    compile "$apps/recursion.c" app filter-file=app.filter
+    record "" ./app 20
+    expect "enter Sink 10945" counts
+    grep -qE 'Fib|main' counts && fail "functions are instrumented that the filter excludes"
+    printf '%s\n' SCOREP_FILE_NAMES_BEGIN 'EXCLUDE */recursion.c' SCOREP_FILE_NAMES_END >file.filter
+    compile "$apps/recursion.c" app filter-file=file.filter
+    [[ $(readelf -S app) != *stipple_desc* ]] || fail "the file is instrumented"
+    ;;
+  broken-filter) # one line with the place, no crash, no object
+    printf '%s\n' SCOREP_REGION_NAMES_BEGIN '  EXCLUED f' SCOREP_REGION_NAMES_END >app.filter
+    compile "$apps/nested.c" app filter-file=app.filter 2>message && fail "a broken filter is accepted"
+    [[ $(grep -c "app.filter:2: 'EXCLUED' stands before any INCLUDE or EXCLUDE of its block" message) == 1 ]] ||
+      { cat message >&2; fail "no clear message, once"; }
+    compile "$apps/nested.c" app filter-file=none.filter 2>message && fail "a missing filter is accepted"
+    [[ $(grep -c "stipple: filter-file none.filter: No such file or directory" message) == 1 ]] ||
+      { cat message >&2; fail "no clear message, once"; }
+    ;;
+  note) # said once if nothing of all that was asked for is there; not a warning
+    more="-Wall -Werror" compile "$apps/nested.c" app exclude-function-list=none 2>message || fail "the note is an error"
+    [[ $(<message) == "stipple: note: nothing in this file matches none" ]] || { cat message >&2; fail "no note"; }
+    compile "$apps/recursion.c" app exclude-function-list=none,Sink 2>message
+    [[ ! -s message ]] || { cat message >&2; fail "a note though Sink is there"; }
+    ;;
+  exceptions) # exceptions=off: an exception takes a function away without a leave
+    cat >throwing.cpp <<'END'
+extern "C" __attribute__((noinline)) void Throw(int x) { if (x > 0) throw x; }
+extern "C" __attribute__((noinline)) void Pass(int x) { Throw(x); Throw(x); }
+int main() {
+  for (int i = 1; i <= 10; ++i) try { Pass(i); } catch (int) {}
+  Pass(0);
+}
+END
+    for position in after-inlining source; do
+      more="-Wl,--no-as-needed -lstdc++" compile throwing.cpp app instrument=$position instruction-threshold=1
+      record "" ./app
+      expect "leave Pass 11" counts
+      more="-Wl,--no-as-needed -lstdc++" compile throwing.cpp app instrument=$position instruction-threshold=1 exceptions=off
+      record "" ./app
+      expect "enter Pass 11" counts
+      expect "leave Pass 1" counts
+    done
+    ;;
   wrong-version) # a plugin whose own number says GCC 99; of LLVM's, that of any other version here
     if [[ $compiler == gcc ]]; then
       sed 's/stipple plugin for GCC [0-9]*/stipple plugin for GCC 99/' "$plugin" >stipple.so

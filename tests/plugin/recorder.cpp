@@ -163,8 +163,8 @@ __attribute__((destructor)) void Finish() {
 
 }  // namespace
 
-// Called by stipple_slow below: eax before, eax after.
-extern "C" __attribute__((visibility("hidden"))) uint32_t recorder_slow(uint32_t token) {
+// Called by slow_path.S: eax before, eax after.
+extern "C" __attribute__((visibility("hidden"))) uint32_t test_slow_event(uint32_t token) {
   Thread& thread = Self();
   if ((token & STIPPLE_COUNT_ONLY) != 0) {
     ++visits[token & STIPPLE_REGION_MASK];
@@ -175,52 +175,12 @@ extern "C" __attribute__((visibility("hidden"))) uint32_t recorder_slow(uint32_t
   return token & ~uint32_t{STIPPLE_LEAVE};
 }
 
-extern "C" void stipple_slow(void);
-// Keeps the red zone and every register but rax, rdx and r11.
-asm(R"(
-	.pushsection .text
-	.hidden	stipple_slow
-	.globl	stipple_slow
-	.type	stipple_slow, @function
-stipple_slow:
-	endbr64
-	leaq	-128(%rsp), %rsp
-	pushq	%rbp
-	pushq	%rbx
-	pushq	%rcx
-	pushq	%rsi
-	pushq	%rdi
-	pushq	%r8
-	pushq	%r9
-	pushq	%r10
-	pushq	%r11
-	movq	%rsp, %rbp
-	subq	$512, %rsp
-	andq	$-64, %rsp
-	fxsave64	(%rsp)
-	movl	%eax, %edi
-	cld
-	call	recorder_slow
-	fxrstor64	(%rsp)
-	movq	%rbp, %rsp
-	popq	%r11
-	popq	%r10
-	popq	%r9
-	popq	%r8
-	popq	%rdi
-	popq	%rsi
-	popq	%rcx
-	popq	%rbx
-	popq	%rbp
-	leaq	128(%rsp), %rsp
-	notrack jmp	*%r11
-	.popsection
-)");
+extern "C" void test_slow_path();
 
 extern "C" __attribute__((visibility("default"))) void stipple_register(stipple_dso* dso) {
   if (getenv("STIPPLE_RECORDER_FILE") == nullptr || dso->abi != STIPPLE_ABI) return;
   if (region_count == 1) Begin();
-  dso->slow = stipple_slow;
+  dso->slow = test_slow_path;
   dso->tp_offset =
       reinterpret_cast<char*>(&control) - static_cast<char*>(__builtin_thread_pointer());
   if (object_count < kObjects) objects[object_count++] = dso;

@@ -7,6 +7,7 @@ raytracer=$1
 mpiexec=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+. "$(dirname "$(realpath "$0")")/../mpi_environment.sh"
 cd "$work"
 printf 'v from 0 0 9 at 0 0 0 up 0 1 0 angle 45 resolution 8 8\ns 0 0 0 1\ns 1 1 1 0\n' > bad.nff
 

@@ -8,6 +8,7 @@ raytracer=$1
 mpiexec=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+. "$(dirname "$(realpath "$0")")/../mpi_environment.sh"
 cd "$work"
 scene="--scene teapot --scene-size 3 --resolution 48x40"
 

@@ -77,4 +77,68 @@ slow_registers:
 	popq	%rbx
 	ret
 	.size	slow_registers, . - slow_registers
+
+/* rdi = slow, esi = token, rdx = from, rcx = to: MXCSR and the control word of the x87. */
+	.globl	slow_control_words
+	.type	slow_control_words, @function
+slow_control_words:
+	subq	$24, %rsp
+	movq	%rcx, 0(%rsp)
+	stmxcsr	8(%rsp)
+	fnstcw	12(%rsp)
+	movl	%esi, %eax
+	ldmxcsr	0(%rdx)
+	fldcw	4(%rdx)
+	leaq	1f(%rip), %r11
+	jmp	*%rdi
+1:	movq	0(%rsp), %rdx
+	stmxcsr	0(%rdx)
+	fnstcw	4(%rdx)
+	ldmxcsr	8(%rsp)
+	fldcw	12(%rsp)
+	addq	$24, %rsp
+	ret
+	.size	slow_control_words, . - slow_control_words
+
+/* rdi = slow, esi = token, rdx = from, rcx = to: zmm0 to zmm31, then k0 to k7. */
+	.globl	slow_zmm
+	.type	slow_zmm, @function
+slow_zmm:
+	subq	$8, %rsp
+	movq	%rcx, 0(%rsp)
+	movl	%esi, %eax
+	.irp n, 0,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,24,25,26,27,28,29,30,31
+	vmovdqu64	64*\n(%rdx), %zmm\n
+	.endr
+	.irp n, 0,1,2,3,4,5,6,7
+	kmovq	2048+8*\n(%rdx), %k\n
+	.endr
+	leaq	1f(%rip), %r11
+	jmp	*%rdi
+1:	movq	0(%rsp), %rdx
+	.irp n, 0,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,24,25,26,27,28,29,30,31
+	vmovdqu64	%zmm\n, 64*\n(%rdx)
+	.endr
+	.irp n, 0,1,2,3,4,5,6,7
+	kmovq	%k\n, 2048+8*\n(%rdx)
+	.endr
+	vzeroupper
+	addq	$8, %rsp
+	ret
+	.size	slow_zmm, . - slow_zmm
+
+/* rdi = slow, esi = token, rdx = tile configuration, rcx = from, r8 = to: tile 0, 16 rows of 64 bytes. */
+	.globl	slow_tiles
+	.type	slow_tiles, @function
+slow_tiles:
+	movl	%esi, %eax
+	movl	$64, %r9d
+	ldtilecfg	(%rdx)
+	tileloadd	(%rcx,%r9,1), %tmm0
+	leaq	1f(%rip), %r11
+	jmp	*%rdi
+1:	tilestored	%tmm0, (%r8,%r9,1)
+	tilerelease
+	ret
+	.size	slow_tiles, . - slow_tiles
 	.section .note.GNU-stack, "", @progbits

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The jump into the slow path: every register comes back.
+#include <cpuid.h>
 #include <gtest/gtest.h>
 #include <stdlib.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
+#include <array>
 #include <cstring>
 
 #include "events.h"
@@ -29,6 +33,14 @@ extern "C" {
 /// came back. With `wide` the vectors are ymm, else xmm.
 std::uint32_t slow_registers(void (*slow)(), std::uint32_t token, const Registers* from,
                              Registers* to, std::uint32_t wide);
+/// MXCSR and the x87's control word, two words each.
+std::uint32_t slow_control_words(void (*slow)(), std::uint32_t token, const std::uint32_t* from,
+                                 std::uint32_t* to);
+/// zmm0-31 and k0-7, 2112 bytes each.
+std::uint32_t slow_zmm(void (*slow)(), std::uint32_t token, const void* from, void* to);
+/// Tile 0 under a configuration of 64 bytes, 1024 bytes each.
+std::uint32_t slow_tiles(void (*slow)(), std::uint32_t token, const void* configuration,
+                         const void* from, void* to);
 }
 
 namespace {
@@ -42,6 +54,22 @@ void ExhaustChunk(const stipple_dso& dso) {
   control->cur = control->end;
 }
 
+/// Bytes that differ.
+template <std::size_t kBytes>
+void Fill(std::array<unsigned char, kBytes>& bytes, std::uint32_t seed) {
+  for (std::size_t i = 0; i < kBytes; ++i)
+    bytes[i] = static_cast<unsigned char>(i * 41 + i / 256 + seed);
+}
+
+/// Whether the processor has tiles and the kernel lets this process use them.
+bool MayUseTiles() {
+  unsigned a = 0, b = 0, c = 0, d = 0;
+  constexpr unsigned kAmxTile = 1u << 24;
+  if (__get_cpuid_count(7, 0, &a, &b, &c, &d) == 0 || (d & kAmxTile) == 0) return false;
+  constexpr long kRequestPermission = 0x1023, kTileData = 18;
+  return syscall(SYS_arch_prctl, kRequestPermission, kTileData) == 0;
+}
+
 class Slow : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -49,6 +77,7 @@ class Slow : public testing::Test {
     setenv("STIPPLE_ARCHIVE", archive_->path().c_str(), 1);
     object_ = new Object<1>(kNames);
   }
+  static void TearDownTestSuite() { delete archive_; }
   static stipple_test::Directory* archive_;
   static Object<1>* object_;
 };
@@ -83,6 +112,56 @@ TEST_F(Slow, EveryRegisterComesBack) {
         EXPECT_EQ(std::memcmp(to.vectors[i], from.vectors[i], width), 0) << "vector " << i;
       EXPECT_EQ(std::memcmp(to.x87, from.x87, 10), 0);
     }
+}
+
+TEST_F(Slow, ControlWordsComeBack) {
+  const std::uint32_t id = object_->descriptors[0].id;
+  const std::uint32_t from[2] = {0x7fbf, 0x0f7f};  // rounding, masks, and what had happened
+  for (const std::uint32_t token : {id, id | STIPPLE_LEAVE}) {
+    ExhaustChunk(object_->dso);
+    std::uint32_t to[2] = {};
+    EXPECT_EQ(slow_control_words(object_->dso.slow, token, from, to), token);
+    EXPECT_EQ(to[0], from[0]);
+    EXPECT_EQ(to[1], from[1]);
+  }
+}
+
+TEST_F(Slow, AProgramThatTrapsInexactResultsIsNotTrappedHere) {
+  const std::uint32_t id = object_->descriptors[0].id;
+  const std::uint32_t from[2] = {0x0f80, 0x037f};  // precision unmasked
+  std::uint32_t to[2] = {};
+  ExhaustChunk(object_->dso);
+  EXPECT_EQ(slow_control_words(object_->dso.slow, id, from, to), id);
+  EXPECT_EQ(to[0], from[0]);
+}
+
+TEST_F(Slow, WideVectorsAndMasksComeBack) {
+  if (!__builtin_cpu_supports("avx512bw")) GTEST_SKIP() << "the processor has no AVX-512";
+  const std::uint32_t id = object_->descriptors[0].id;
+  for (const std::uint32_t token : {id, id | STIPPLE_LEAVE}) {
+    ExhaustChunk(object_->dso);
+    std::array<unsigned char, 2112> from{}, to{};
+    Fill(from, token);
+    EXPECT_EQ(slow_zmm(object_->dso.slow, token, from.data(), to.data()), token);
+    EXPECT_EQ(from, to);
+  }
+}
+
+TEST_F(Slow, TilesAreLeftAlone) {
+  if (!MayUseTiles()) GTEST_SKIP() << "the processor has no AMX, or the kernel does not give it";
+  const std::uint32_t id = object_->descriptors[0].id;
+  std::array<unsigned char, 64> configuration{};
+  configuration[0] = 1;    // palette
+  configuration[16] = 64;  // bytes per row of tile 0
+  configuration[48] = 16;  // its rows
+  for (const std::uint32_t token : {id, id | STIPPLE_LEAVE}) {
+    ExhaustChunk(object_->dso);
+    std::array<unsigned char, 1024> from{}, to{};
+    Fill(from, token);
+    EXPECT_EQ(slow_tiles(object_->dso.slow, token, configuration.data(), from.data(), to.data()),
+              token);
+    EXPECT_EQ(from, to);
+  }
 }
 
 }  // namespace

@@ -37,6 +37,7 @@ bool IsCalledFrom(std::uintptr_t caller) {
 constexpr std::uintptr_t kSlowBytes = 1024;  // at most
 volatile std::uintptr_t caller = 0;
 volatile int steps = 0, blind_steps = 0, calls = 0, blind_calls = 0;
+volatile bool throws = false;
 
 void AtStep(int, siginfo_t*, void* context) {
   const auto at =
@@ -68,6 +69,7 @@ __thread stipple_control* stipple_stream = &control;
 std::uint32_t stipple_slow_event(std::uint32_t token) {
   calls = calls + 1;
   if (!IsCalledFrom(caller)) blind_calls = blind_calls + 1;
+  if (throws) throw token;
   return token;
 }
 }
@@ -104,4 +106,35 @@ TEST(Slow, UnwindsAtEveryInstruction) {
   EXPECT_GT(steps, 100);
   EXPECT_EQ(blind_steps, 0);
   EXPECT_EQ(blind_calls, 0);
+}
+
+__attribute__((noinline)) void Throwing(const stipple_dso& dso, std::uint32_t token) {
+  if (token == 0) throw token;  // for a compiler an asm never throws
+  stipple_test::Event(dso, token);
+}
+
+/// As a debugger's or a profiler's code may, in a signal handler there.
+TEST(Slow, AnExceptionFromWithinIsCaughtOutside) {
+  stipple::PrepareSaveArea();
+  static stipple_control empty{};
+  stipple_stream = &empty;
+  std::uint64_t thread_pointer = 0;
+  __asm__("movq %%fs:0, %0" : "=r"(thread_pointer));
+  stipple_dso dso{};
+  dso.tp_offset =
+      static_cast<std::int64_t>(reinterpret_cast<std::uint64_t>(&stipple_stream) - thread_pointer);
+  dso.slow = stipple_slow;
+  throws = true;
+  std::uint32_t caught = 0;
+  for (std::uint32_t token = 1; token <= 3; ++token) {
+    try {
+      Throwing(dso, token);
+      ADD_FAILURE();
+    } catch (std::uint32_t thrown) {
+      caught += thrown;
+    }
+  }
+  throws = false;
+  stipple_stream = &control;
+  EXPECT_EQ(caught, 6u);
 }

@@ -122,6 +122,8 @@ int Killed(long ms) {
         p->rounds.store(round, std::memory_order_release);
       }
     });
+  for (int i = 0; i < 4; ++i)
+    while (progress[i].rounds == 0) sched_yield();
   usleep(static_cast<useconds_t>(1000 * ms));
   kill(getpid(), SIGKILL);
   return 1;

@@ -23,7 +23,10 @@ inline constexpr std::uint32_t kGranuleBytes = 16 * 1024;
 
 /// Features that a reader must know to read a stream at all; a set bit it does not know makes it
 /// refuse.
-enum class Feature : std::uint64_t { kCompacted = 1 };
+enum class Feature : std::uint64_t {
+  kCompacted = 1,
+  kStackSwitches = 2,  // set when the first StackSwitch is written
+};
 
 /// What `ticks` count.
 enum class ClockKind : std::uint32_t {
@@ -110,7 +113,7 @@ enum class RecordKind : std::uint8_t {
   kMpiCollective = 7,
   kMpiProbe = 8,
   kTransmission = 9,  // simulation: physical start and end
-  kUnwound = 10,      // frames left by longjmp
+  kUnwound = 10,      // frames left by a jump
   kRegionMode = 11,   // the budget changed a region's mode
   kContextSwitch = 12,
   kSystemCall = 13,
@@ -119,6 +122,8 @@ enum class RecordKind : std::uint8_t {
   kTimeStamp = 16,   // a thread that was silent for long
   kThreadEnd = 17,
   kClockStep = 18,
+  kJumpPoint = 19,    // setjmp, getcontext
+  kStackSwitch = 20,  // swapcontext, setcontext, the end of a context
   // Definitions.
   kDefineRegion = 64,
   kDefineLocation = 65,
@@ -272,6 +277,39 @@ struct TimeStamp {
   std::uint64_t raw_ns;
 };
 static_assert(sizeof(TimeStamp) == 24);
+
+// Jumps. A thread's jump points are told apart by the stack pointer that they go back to: of two with
+// the same one only the later is alive.
+
+/// The program may come back to here, and to the frames that are open now, by a jump.
+struct JumpPoint {
+  static constexpr RecordKind kKind = RecordKind::kJumpPoint;
+  EventWord header;
+  std::uint64_t ticks;
+  std::uint64_t stack;
+};
+static_assert(sizeof(JumpPoint) == 24);
+
+/// The program jumps to the last jump point with this `stack`: frames opened since are left. A point
+/// that the stream does not have was set before its thread's first event: all frames are left.
+struct Unwound {
+  static constexpr RecordKind kKind = RecordKind::kUnwound;
+  EventWord header;
+  std::uint64_t ticks;
+  std::uint64_t stack;  // 0: the thread's function is left
+};
+static_assert(sizeof(Unwound) == 24);
+
+/// The thread goes on with the jump point `to` on another stack; what is open now waits at the jump
+/// point `from`. A `to` that the stream does not have is a new context, without open frames.
+struct StackSwitch {
+  static constexpr RecordKind kKind = RecordKind::kStackSwitch;
+  EventWord header;
+  std::uint64_t ticks;
+  std::uint64_t from;
+  std::uint64_t to;
+};
+static_assert(sizeof(StackSwitch) == 32);
 
 // Definitions. Text follows the struct: its parts without terminators, one after the other,
 // zero-padded to 8 bytes.

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "analysis/stats/number.h"
 #include "analysis/views/axis.h"
 #include "analysis/views/mark_names.h"
-#include "analysis/views/number.h"
 #include "analysis/views/palette.h"
 #include "analysis/views/state_runs.h"
 #include "analysis/views/text.h"

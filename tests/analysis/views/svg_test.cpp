@@ -3,7 +3,9 @@
 #include "analysis/views/svg.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <string>
@@ -131,9 +133,11 @@ TEST(Report, RowNamesInTheHoverDataAreJson) {
 
 TEST(Report, ScriptHasNoSyntaxError) {
   if (std::system("node --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "needs node";
-  const std::string path = testing::TempDir() + "stipple_page_script.js";
+  const std::string path =
+      testing::TempDir() + "stipple_page_script_" + std::to_string(getpid()) + ".js";
   std::ofstream(path) << PageScript();
   EXPECT_EQ(std::system(("node --check '" + path + "'").c_str()), 0);
+  std::remove(path.c_str());
 }
 
 TEST(Report, ManyFunctionsAreCutAtThirty) {

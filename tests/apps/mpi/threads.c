@@ -5,7 +5,7 @@
 #include <pthread.h>
 #include <stdlib.h>
 
-enum { kThreads = 4, kRounds = 500 };
+enum { kThreads = 4, kRounds = 100 };
 
 static MPI_Comm comms[kThreads];
 static int rank;

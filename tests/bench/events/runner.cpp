@@ -40,8 +40,9 @@ struct Variant {
 
 }  // namespace
 
-// The ring is full: begin again at its start.
-extern "C" __attribute__((used)) std::uint32_t bench_slow(std::uint32_t token) {
+// Called by slow_path.S when the ring is full: begin again at its start.
+extern "C" __attribute__((visibility("hidden"))) std::uint32_t test_slow_event(
+    std::uint32_t token) {
   if (ring_control.end != 0) ++rings_filled;
   ring_control.cur = reinterpret_cast<std::uint64_t>(ring);
   ring_control.end = ring_control.cur + sizeof(ring);
@@ -51,42 +52,11 @@ extern "C" __attribute__((used)) std::uint32_t bench_slow(std::uint32_t token) {
   return token & ~std::uint32_t{STIPPLE_LEAVE};
 }
 
-extern "C" void bench_slow_entry();
-asm(R"(
-	.text
-bench_slow_entry:
-	leaq	-128(%rsp), %rsp
-	pushq	%rbp
-	pushq	%rcx
-	pushq	%rsi
-	pushq	%rdi
-	pushq	%r8
-	pushq	%r9
-	pushq	%r10
-	pushq	%r11
-	movq	%rsp, %rbp
-	subq	$512, %rsp
-	andq	$-64, %rsp
-	fxsave64	(%rsp)
-	movl	%eax, %edi
-	call	bench_slow
-	fxrstor64	(%rsp)
-	movq	%rbp, %rsp
-	popq	%r11
-	popq	%r10
-	popq	%r9
-	popq	%r8
-	popq	%rdi
-	popq	%rsi
-	popq	%rcx
-	popq	%rbp
-	leaq	128(%rsp), %rsp
-	jmp	*%r11
-)");
+extern "C" void test_slow_path();
 
 extern "C" __attribute__((visibility("default"))) void stipple_register(stipple_dso* dso) {
   if (!recording) return;
-  dso->slow = bench_slow_entry;
+  dso->slow = test_slow_path;
   dso->tp_offset =
       reinterpret_cast<char*>(&control) - static_cast<char*>(__builtin_thread_pointer());
   std::uint32_t id = 1;

@@ -10,8 +10,8 @@ stipple=$1 consistency=$2 ranks=$3 golden=$4
 shift 4
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+. "$(dirname "$(realpath "$0")")/../../mpi_environment.sh"
 cd "$work"
-export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 status=0
 "$stipple" run -o run.stipple --clock exact -- mpirun --oversubscribe -n "$ranks" "$@" || status=$?
 if [ "${DIES:-0}" = 1 ]; then

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "analysis/views/number.h"
+#include "analysis/stats/number.h"
 
 #include <fmt/format.h>
 
@@ -61,6 +61,11 @@ std::string FormatCount(std::int64_t count) {
     digits.insert(place, 1, ',');
   }
   return digits;
+}
+
+std::string FormatCount(std::uint64_t count, std::string_view noun) {
+  return fmt::format("{} {}{}", FormatCount(static_cast<std::int64_t>(count)), noun,
+                     count == 1 ? "" : "s");
 }
 
 std::string FormatPercent(double fraction) {

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// What is rare: jumps, contexts, frames left unseen.
+#include "analysis/stats/profile_visitor.h"
+
+namespace stipple {
+
+/// Ends the frame on top, which has no leave of its own.
+void ProfileVisitor::PopLeft(Hot& hot, std::uint64_t ticks) {
+  if (hot.top->region->is_watched != 0)
+    collector_->Function(static_cast<std::uint32_t>(hot.top->region - regions_.data()), true, ticks);
+  hot.Pop(hot.last);
+}
+
+/// Ends the frames above the innermost one of `region`.
+ProfileVisitor::Hot ProfileVisitor::Repair(Hot hot, const RegionTicks* region,
+                                           std::uint64_t ticks) {
+  for (; hot.top->region != region; ++enters_without_leave_) PopLeft(hot, ticks);
+  return hot;
+}
+
+ProfileVisitor::Hot ProfileVisitor::Jump(Hot hot, const EventWord* record, std::uint64_t ticks) {
+  const std::uint64_t now = std::clamp(ticks, hot.begin, hot.end);
+  hot.top->region->exclusive += now - hot.last;
+  hot.last = now;
+  const std::uint32_t before = points_.context();
+  const auto depth = [&] { return static_cast<std::size_t>(hot.top - stack_.data()); };
+  const std::optional<StackPlace> place = points_.After(record, depth());
+  if (!place) return hot;
+  if (place->context != before) SwitchContext(hot, before, place->context);
+  while (depth() > place->depth) PopLeft(hot, ticks);
+  return hot;
+}
+
+/// Takes the frames of one context off the stack and puts those of another there, as if all had been
+/// left, and entered again: inclusive time does not grow while a context waits, either.
+void ProfileVisitor::SwitchContext(Hot& hot, std::uint32_t from, std::uint32_t to) {
+  if (hot.top != stack_.data()) {
+    std::vector<RegionTicks*>& frames = waiting_[from];
+    for (const Frame* f = stack_.data() + 1; f <= hot.top; ++f) frames.push_back(f->region);
+    while (hot.top != stack_.data()) hot.Pop(hot.last);
+  }
+  const auto frames = waiting_.extract(to);
+  if (frames.empty()) return;
+  for (RegionTicks* region : frames.mapped()) {
+    if (hot.top == hot.limit) {
+      hot.top = Grow();
+      hot.limit = Limit();
+    }
+    ++region->open;
+    *++hot.top = {region, hot.last};
+  }
+}
+
+}  // namespace stipple
