@@ -33,12 +33,12 @@ std::string FilterText(const FilterTotals& filter) {
         "the filter {} was not applied: only functions of -finstrument-functions were recorded, "
         "which have no names while the program runs",
         filter.path);
-  std::string text =
-      filter.filtered == 0
-          ? fmt::format("the filter {} excludes none of the {}", filter.path,
-                        FormatCount(filter.functions, "function"))
-          : fmt::format("the filter {} left out {} of {}", filter.path, FormatCount(static_cast<std::int64_t>(filter.filtered)),
-                        FormatCount(filter.functions, "function"));
+  std::string text = filter.filtered == 0
+                         ? fmt::format("the filter {} excludes none of the {}", filter.path,
+                                       FormatCount(filter.functions, "function"))
+                         : fmt::format("the filter {} left out {} of {}", filter.path,
+                                       FormatCount(static_cast<std::int64_t>(filter.filtered)),
+                                       FormatCount(filter.functions, "function"));
   if (filter.has_code) text += "; it is not applied to functions of -finstrument-functions";
   return text;
 }
