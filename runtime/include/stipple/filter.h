@@ -282,34 +282,37 @@ inline bool MatchesPattern(std::string_view pattern, std::string_view text) {
 /// (null if there is no room); up to the first problem if there is one.
 inline std::size_t ReadFilter(std::string_view text, FilterRule* rules, std::size_t room,
                               FilterProblem& problem) {
-  using namespace filter_detail;
   problem = {0, {}, nullptr};
-  ReadState state{Block::kNone, false, false, false};
+  filter_detail::ReadState state{filter_detail::Block::kNone, false, false, false};
   const char* at = text.data();
   const char* const end = at + text.size();
   std::uint32_t line = 1;
   std::size_t count = 0;
   while (true) {
-    const std::string_view word = NextWord(at, end, line);
+    const std::string_view word = filter_detail::NextWord(at, end, line);
     if (word.empty()) break;
-    if (const char* what = TakeKeyword(state, word); what != nullptr) {
+    if (const char* what = filter_detail::TakeKeyword(state, word); what != nullptr) {
       if (*what == '\0') continue;
       problem = {line, word, what};
       return count;
     }
-    const char* what = EndsInLoneBackslash(word) ? "ends in a backslash that escapes nothing"
-                                                 : ProblemOfPattern(state, word);
+    const char* what = filter_detail::EndsInLoneBackslash(word)
+                           ? "ends in a backslash that escapes nothing"
+                           : filter_detail::ProblemOfPattern(state, word);
     if (what != nullptr) {
       problem = {line, word, what};
       return count;
     }
     if (count < room)
-      rules[count] = {word,           line,          state.block == Block::kFiles,
+      rules[count] = {word,           line,          state.block == filter_detail::Block::kFiles,
                       state.excludes, state.mangled, false};
     ++count;
   }
-  if (state.block == Block::kFiles) problem = {line, "SCOREP_FILE_NAMES_END"sv, "is missing"};
-  if (state.block == Block::kRegions) problem = {line, "SCOREP_REGION_NAMES_END"sv, "is missing"};
+  constexpr std::string_view kFilesEnd = "SCOREP_FILE_NAMES_END";
+  constexpr std::string_view kRegionsEnd = "SCOREP_REGION_NAMES_END";
+  if (state.block != filter_detail::Block::kNone)
+    problem = {line, state.block == filter_detail::Block::kFiles ? kFilesEnd : kRegionsEnd,
+               "is missing"};
   return count;
 }
 
@@ -347,13 +350,12 @@ inline bool NeedsDemangledNames(const FilterRule* rules, std::size_t count) {
 /// Empty if `linkage_name` is none of those or does not fit; `linkage_name` itself always fits.
 inline std::string_view FilterFortranName(std::string_view linkage_name, char* buffer,
                                           std::size_t room) {
-  using namespace filter_detail;
-  constexpr std::string_view kMod = "_MOD_"sv;
+  constexpr std::string_view kMod = "_MOD_";
   const char* const begin = linkage_name.data();
   const std::size_t bytes = linkage_name.size();
   if (bytes < 3 + kMod.size() || begin[0] != '_' || begin[1] != '_' || room < bytes) return {};
   std::size_t at = 3;  // a module has a name
-  while (at + kMod.size() <= bytes && !Is({begin + at, kMod.size()}, kMod)) ++at;
+  while (at + kMod.size() <= bytes && !filter_detail::Is({begin + at, kMod.size()}, kMod)) ++at;
   if (at + kMod.size() > bytes) return {};
   std::size_t length = 0;
   for (std::size_t i = 2; i < bytes && length < room; ++i) {
