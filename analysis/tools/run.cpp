@@ -143,7 +143,7 @@ std::vector<std::string> Prepare(const RunOptions& options, const std::string& p
   const std::string all = own == nullptr || *own == '\0' ? preload : preload + ":" + own;
   // Asked before the runtime is preloaded: the launcher's version is not to be recorded.
   const char* list = std::getenv("OMPI_MCA_mca_base_env_list");
-  std::vector<std::string> variables = {"LD_PRELOAD", "STIPPLE_ARCHIVE", "STIPPLE_CLOCK"};
+  std::vector<std::string> variables = {"LD_PRELOAD", "STIPPLE_ARCHIVE", "STIPPLE_CLOCK", "ASAN_OPTIONS"};
   const auto set_or_unset = [&variables](const char* name, const std::string& value) {
     if (value.empty()) {
       unsetenv(name);
@@ -159,6 +159,11 @@ std::vector<std::string> Prepare(const RunOptions& options, const std::string& p
   setenv("LD_PRELOAD", all.c_str(), 1);
   setenv("STIPPLE_ARCHIVE", fs::absolute(options.archive).c_str(), 1);
   setenv("STIPPLE_CLOCK", options.clock.c_str(), 1);
+  // A program built with -fsanitize=address refuses to start behind another preloaded library.
+  const char* sanitizer = std::getenv("ASAN_OPTIONS");
+  setenv("ASAN_OPTIONS",
+         ("verify_asan_link_order=0:" + std::string(sanitizer == nullptr ? "" : sanitizer)).c_str(),
+         1);
   if (list != nullptr) {  // Open MPI refuses both the list and -x
     std::string longer = list;
     for (const std::string& name : variables) longer += ";" + name;

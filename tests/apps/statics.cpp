@@ -6,13 +6,19 @@
 [[gnu::noinline]] void Early() { std::puts("early"); }
 [[gnu::noinline]] void Late() { std::puts("late"); }
 [[gnu::noinline]] void AtExit() { std::puts("at exit"); }
-// Calls that something follows, so that no compiler makes jumps of them.
-#define CALL(function) \
-  function();          \
-  __asm__ volatile("")
-__attribute__((constructor(101))) void First() { CALL(Early); }
-__attribute__((constructor(102))) void Second() { CALL(Late); }
-__attribute__((destructor(101))) void Last() { CALL(Late); }
+// Something is left to do behind these calls, so that they are not made jumps.
+__attribute__((constructor(101))) void First() {
+  Early();
+  __asm__ volatile("");
+}
+__attribute__((constructor(102))) void Second() {
+  Late();
+  __asm__ volatile("");
+}
+__attribute__((destructor(101))) void Last() {
+  Late();
+  __asm__ volatile("");
+}
 
 struct Global {
   [[gnu::noinline]] Global() { std::puts("Global"); }
