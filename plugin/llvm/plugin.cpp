@@ -36,6 +36,10 @@ bool IsUnsplitCoroutine(const llvm::Function& function) {
 #endif
 }
 
+// A coroutine's body is a function only later, when the optimiser has taken it apart; until then
+// this marks it, and the parts inherit the mark.
+constexpr char kLater[] = "stipple-later";
+
 bool CanHoldEvents(const llvm::Function& function) {
   // An available_externally body is only there to be inlined; the real one is elsewhere.
   return !function.isDeclaration() && !function.hasAvailableExternallyLinkage() &&
@@ -60,7 +64,8 @@ class EventPass : public llvm::PassInfoMixin<EventPass> {
     bool changed = false;
     for (llvm::Function& function : module) {
       TailCalls tail_calls;
-      if (options.position != position_) {
+      if (!late && IsUnsplitCoroutine(function)) function.addFnAttr(kLater);
+      if (options.position != position_ && !function.hasFnAttribute(kLater)) {
         if (preserve_tail_calls) LeaveBeforeTailCalls(function);
       } else if (CanHoldEvents(function) && Select(FactsOf(function), options).instrument) {
         llvm::Value* token = InsertEvents(function);
