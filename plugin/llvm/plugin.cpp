@@ -45,15 +45,14 @@ bool IsUnsplitCoroutine(const llvm::Function& function) {
 #endif
 }
 
+// A coroutine's body is a function only later, when the optimiser has taken it apart; until then
+// this marks it, and the parts inherit the mark.
+constexpr char kLater[] = "stipple-later";
+
 bool CanHoldEvents(const llvm::Function& function) {
   // An available_externally body is only there to be inlined; the real one is elsewhere.
   return !function.isDeclaration() && !function.hasAvailableExternallyLinkage() &&
          !function.hasFnAttribute(llvm::Attribute::Naked) && !IsUnsplitCoroutine(function);
-}
-
-void AddAccount(Selection& selection, llvm::Module& module) {
-  if (const std::string note = selection.Note(); !note.empty()) llvm::errs() << note << '\n';
-  if (!selection.Account().empty()) module.appendModuleInlineAsm(AccountCode(selection.Account()));
 }
 
 /// How the function's events are written; none: it gets none.
@@ -80,17 +79,16 @@ class EventPass : public llvm::PassInfoMixin<EventPass> {
       return llvm::PreservedAnalyses::all();
     const bool inserts = options.position == position_;
     Selection selection(options);
-    if (inserts) {
-      if (const auto problem = selection.ReadFilterFile()) {
-        Say(*problem, module.getContext());
-        return llvm::PreservedAnalyses::all();
-      }
+    if (const auto problem = selection.ReadFilterFile()) {
+      Say(*problem, module.getContext());
+      return llvm::PreservedAnalyses::all();
     }
     const bool preserve_tail_calls = optimises_ && options.tail_calls_preserved;
     bool changed = false;
     for (llvm::Function& function : module) {
       TailCalls tail_calls;
-      if (!inserts) {
+      if (!late && IsUnsplitCoroutine(function)) function.addFnAttr(kLater);
+      if (!inserts && !function.hasFnAttribute(kLater)) {
         if (preserve_tail_calls) LeaveBeforeTailCalls(function);
       } else if (const std::optional<Form> form = FormOf(function, selection)) {
         llvm::Value* token = InsertEvents(function, *form);
@@ -100,7 +98,10 @@ class EventPass : public llvm::PassInfoMixin<EventPass> {
       }
       if (late) GuardEvents(function);
     }
-    if (inserts) AddAccount(selection, module);
+    if (const std::string note = selection.Note(); inserts && !note.empty())
+      llvm::errs() << note << '\n';
+    if (!selection.Account().empty())
+      module.appendModuleInlineAsm(AccountCode(selection.Account()));
     if (changed) module.appendModuleInlineAsm(ObjectCode());
     return llvm::PreservedAnalyses::none();
   }

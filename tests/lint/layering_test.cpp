@@ -36,7 +36,7 @@ const std::vector<PartRule> kRules = {
     {"plugin/select", {kFilter}, {}},
     {"plugin", {kAbi}, {}},
     {"plugin/gcc", {kAbi, "plugin/select", "plugin"}, {"gcc-plugin.h", "*gcc"}},
-    {"plugin/llvm", {kAbi, "plugin/select", "plugin"}, {"llvm/"}},
+    {"plugin/llvm", {kAbi, "plugin/select", "plugin"}, {"llvm/", "clang/"}},
     {"runtime/core", {kAbi, kFormat, kUser, kFilter}, {}},
     {"runtime/system", {kAbi, kFormat, "runtime/core"}, {}},
     {"runtime/unwind", {kFormat}, {"libunwind"}},
@@ -118,8 +118,8 @@ bool Allowed(const PartRule& rule, const std::string& target) {
 /// have plain names and are only on the path of plugin/gcc, so they need no row.
 bool IsLibrary(const std::string& name) {
   static const std::regex kPattern(
-      "(mpi\\.h|png\\.h|fmt/.*|nlohmann/.*|CLI/.*|vtk.*|llvm/.*|embree.*|hwy/.*|simgrid/.*|smpi/.*|"
-      "otf2/.*|zstd\\.h|elfutils/.*|libunwind.*|gcc-plugin\\.h)");
+      "(mpi\\.h|png\\.h|fmt/.*|nlohmann/.*|CLI/.*|vtk.*|llvm/.*|clang/.*|embree.*|hwy/.*|"
+      "simgrid/.*|smpi/.*|otf2/.*|zstd\\.h|elfutils/.*|libunwind.*|gcc-plugin\\.h)");
   return std::regex_match(name, kPattern);
 }
 

@@ -88,11 +88,10 @@ case $check in
     compile "$apps/recursion.c" app exclude-file-list=recursion
     [[ $(readelf -S app) != *stipple_desc* ]] || fail "the file is instrumented"
     ;;
-  attributes) # what the source says of a function; clang passes on only what annotate() says
-    if [[ $compiler == gcc ]]; then
-      never='no_instrument_function' always='xray_always_instrument'
-    else
-      never='annotate("no_instrument_function")' always='annotate("xray_always_instrument")'
+  attributes) # what the source says of a function; with -fpass-plugin alone clang passes on only what annotate() says
+    never='no_instrument_function' always='xray_always_instrument'
+    if [[ $compiler == llvm && ! -e ${plugin%/*}/stipple_attributes.so ]]; then
+      never="annotate(\"$never\")" always="annotate(\"$always\")"
     fi
     sed "s/^__attribute__((noinline)) void Sink/__attribute__((noinline, $always)) void Sink/
          s/^__attribute__((noinline)) int Fib/__attribute__((noinline, $never)) int Fib/" \
