@@ -5,8 +5,8 @@
 packages=(lua5.4 lua-lpeg lua5.1)
 
 build() {
-  make -C lua5.4/src linux CC="$cc $flags" MYLIBS=
-  make -C lua-lpeg linux CC="$cc $flags" COPT="-O2 -DNDEBUG" LUADIR="$PWD/lua5.4/src"
+  make -j2 -C lua5.4/src linux CC="$cc $flags" MYLIBS=
+  make -j2 -C lua-lpeg linux CC="$cc $flags" COPT="-O2 -DNDEBUG" LUADIR="$PWD/lua5.4/src"
 }
 
 # Each assertion of LPeg's tests: its line and whether it holds, in the order in which they are made.
