@@ -35,7 +35,7 @@ peer_build() { # KIND KERNEL
 peer_missing() {
   case $1 in
     uftrace) command -v uftrace >/dev/null || echo "apt-get install uftrace" ;;
-    lttng) { command -v lttng && ldconfig -p | grep liblttng-ust-cyg-profile-fast; } >/dev/null || echo "apt-get install lttng-tools liblttng-ust-dev" ;;
+    lttng) { command -v lttng && /sbin/ldconfig -p | grep liblttng-ust-cyg-profile-fast; } >/dev/null || echo "apt-get install lttng-tools liblttng-ust-dev" ;;
     xray) peer_build xray leaf 2>/dev/null || echo "apt-get install libclang-rt-14-dev" ;;
   esac
 }

@@ -2,9 +2,7 @@
 // A program that is mostly templates: orders become JSON, text, JSON again and tables, by
 // nlohmann-json and fmt, which are compiled as the program's own headers. ./run bench size measures
 // what the plugin adds to it; the argument is how many orders there are.
-#define FMT_HEADER_ONLY
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <cstdint>
 #include <cstdio>

@@ -67,7 +67,7 @@ run_size() {
   for compiler in gcc llvm; do
     for kind in plain default all; do
       size_command $compiler $kind
-      "${command[@]}" "$source" -o "$work/$compiler.$kind" || return 1
+      "${command[@]}" "$source" -lfmt -o "$work/$compiler.$kind" || return 1
       size_line "$work/$compiler.$kind" "$compiler $kind"
     done
     text_ratio=$(awk -v a="$(text_of "$work/$compiler.default")" -v b="$(text_of "$work/$compiler.plain")" 'BEGIN { printf "%.3f", a / b }')
