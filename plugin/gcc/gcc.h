@@ -100,7 +100,8 @@ void InstrumentGraph(function* fun, Form form);     // after inlining: SSA, exce
 void InstrumentSequence(function* fun, Form form);  // as written: one GIMPLE_BIND
 
 /// Puts the leaves that only a return separates from a call that GCC will make a jump before that
-/// call, which without them is one. Returns whether the graph changed. Runs just before pass `tailc`.
+/// call, which without them is one. Returns whether the graph changed. Runs just before pass
+/// `tailc`.
 bool LeaveBeforeTailCalls(function* fun);
 
 /// Takes the calls that are marked as jumps and have a leave behind them for calls again: GCC would
