@@ -22,6 +22,7 @@ suite() {
   (cd lua-lpeg && LUA_CPATH='./?.so' LUA_PATH='./?.lua' "$lua" -e "$lpeg_assertions" test.lua 2>&1)
   echo "lpeg status $?"
   for program in lua5.1/test/*.lua; do
+    [ "$program" != lua5.1/test/life.lua ] || continue  # 35 million events of the same few functions
     output=$(cd lua5.1/test && "$lua" "${program##*/}" </dev/null 2>&1)
     status=$?
     # These print times or addresses.
