@@ -13,6 +13,7 @@
 // offered as a function; where this is the more careful of the two, the leave stays behind the
 // call.
 #include <optional>
+#include <utility>
 
 #include "plugin/gcc/gcc.h"
 
@@ -272,17 +273,17 @@ std::vector<gcall*> Calls(function* fun) {
 
 bool LeaveBeforeTailCalls(function* fun) {
   const bool may = FunctionMayJumpOut(fun);
-  bool moved = false;
+  // All are chosen before one is moved: liveness cannot be asked of a graph with unreachable blocks.
+  std::vector<std::pair<gcall*, Tail>> chosen;
   for (gcall* call : Calls(fun)) {
     const bool promised = gimple_call_tail_p(call);  // the front end did, for a coroutine
     if (!may && !promised) continue;
     const std::optional<Tail> tail = TailOf(call);
     if (!tail || !ExceptionOnlyLeaves(fun, call, tail->tokens.size())) continue;
-    if (!promised && !IsTailCall(fun, call)) continue;
-    Move(fun, call, *tail);
-    moved = true;
+    if (promised || IsTailCall(fun, call)) chosen.emplace_back(call, *tail);
   }
-  if (!moved) return false;
+  if (chosen.empty()) return false;
+  for (const auto& [call, tail] : chosen) Move(fun, call, tail);
   ForgetGraph(fun);
   delete_unreachable_blocks();
   maybe_remove_unreachable_handlers();

@@ -31,7 +31,7 @@ struct ClockPair {
 /// Reads both clocks close together: the counter before and after, and the middle of them. An
 /// interruption in between is seen by its length and the reading done again.
 inline ClockPair ReadClockPair() {
-  constexpr std::uint64_t kQuickTicks = 2000;
+  constexpr std::uint64_t kFewTicks = 2000;
   ClockPair best{};
   std::uint64_t best_length = ~std::uint64_t{0};
   for (int attempt = 0; attempt < 3; ++attempt) {
@@ -42,7 +42,7 @@ inline ClockPair ReadClockPair() {
       best = {before + length / 2, raw_ns};
       best_length = length;
     }
-    if (length < kQuickTicks) break;
+    if (length < kFewTicks) break;
   }
   return best;
 }
