@@ -63,6 +63,22 @@ std::optional<Form> FormOf(llvm::Function& function, Selection& selection) {
   return facts.makes_calls ? Form::kCall : Form::kInline;
 }
 
+// -masm=intel, which newer versions apply to file-scope assembly as well. The option is LLVM's own;
+// its type is local to a source file there, so the value is looked at as what an enumeration is.
+bool IsIntelSyntax() {
+  const auto& known = llvm::cl::getRegisteredOptions();
+  const auto syntax = known.find("x86-asm-syntax");
+  if (syntax == known.end() || syntax->second->getNumOccurrences() == 0) return false;
+  return static_cast<const llvm::cl::opt<int>*>(syntax->second)->getValue() == 1;
+}
+
+void AddObjectCode(llvm::Module& module) {
+  const bool intel = IsIntelSyntax();
+  if (intel) module.appendModuleInlineAsm(".att_syntax prefix");
+  module.appendModuleInlineAsm(ObjectCode());
+  if (intel) module.appendModuleInlineAsm(".intel_syntax noprefix");
+}
+
 // Both positions come here; as written (`instrument=source`) the early one inserts and the late one
 // finishes. -O0 makes no call a jump.
 class EventPass : public llvm::PassInfoMixin<EventPass> {
@@ -102,7 +118,7 @@ class EventPass : public llvm::PassInfoMixin<EventPass> {
       llvm::errs() << note << '\n';
     if (!selection.Account().empty())
       module.appendModuleInlineAsm(AccountCode(selection.Account()));
-    if (changed) module.appendModuleInlineAsm(ObjectCode());
+    if (changed) AddObjectCode(module);
     return llvm::PreservedAnalyses::none();
   }
 

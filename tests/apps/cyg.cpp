@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Built with -finstrument-functions: members, templates, lambdas, constructors of statics, threads.
 #include <cstdio>
-#include <string>
 #include <thread>
 
 #if defined(__clang__)
@@ -34,7 +33,6 @@ shapes::Square of_program(2);
 }
 
 int main() {
-  std::printf("%d %s\n", shapes::Twice(of_program.Area()),
-              shapes::Twice(std::string("ab")).c_str());
+  std::printf("%d %g\n", shapes::Twice(of_program.Area()), shapes::Twice(1.5));
   std::thread([] { shapes::Square(3).Area(); }).join();
 }
