@@ -1,6 +1,7 @@
 # What users find besides the programs: compiler wrappers, pkg-config's file, find_package's.
 include(CMakePackageConfigHelpers)
 
+file(MAKE_DIRECTORY ${CMAKE_RUNTIME_OUTPUT_DIRECTORY})
 foreach(wrapper cc c++ fc mpicc mpicxx)
   install(PROGRAMS ${CMAKE_CURRENT_LIST_DIR}/stipple-cc DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME stipple-${wrapper})
   file(CREATE_LINK ${CMAKE_CURRENT_LIST_DIR}/stipple-cc ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/stipple-${wrapper} SYMBOLIC)

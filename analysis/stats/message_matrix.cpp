@@ -2,17 +2,29 @@
 #include "analysis/stats/message_matrix.h"
 
 #include <algorithm>
+#include <numeric>
 #include <string>
 #include <vector>
 
 namespace stipple {
 namespace {
 
+/// A matrix of more rows holds only ranks that were recorded: the number of a world's ranks is one
+/// word, which damage can make millions.
+constexpr int kMostRanks = 4096;
+
 /// All ranks of the program, hosts last.
 std::vector<int> RanksOf(const Trace& trace, const Selection& selection) {
   std::vector<int> ranks;
-  for (int rank = 0; rank < trace.RankCount(); ++rank)
-    if (selection.HasRank(rank)) ranks.push_back(rank);
+  if (trace.RankCount() <= kMostRanks) {
+    ranks.resize(static_cast<std::size_t>(trace.RankCount()));
+    std::iota(ranks.begin(), ranks.end(), 0);
+  } else {
+    for (const Process& p : trace.processes()) ranks.push_back(p.rank);
+    std::ranges::sort(ranks);
+    ranks.erase(std::unique(ranks.begin(), ranks.end()), ranks.end());
+  }
+  std::erase_if(ranks, [&selection](int rank) { return !selection.HasRank(rank); });
   std::stable_partition(ranks.begin(), ranks.end(),
                         [&trace](int rank) { return !trace.IsHost(rank); });
   return ranks;
