@@ -43,6 +43,13 @@ std::string FilterText(const FilterTotals& filter) {
   return text;
 }
 
+/// Whether the process met functions after its region ids had run out.
+bool RanOutOfIds(const Process& process) {
+  return std::ranges::any_of(process.stream->availability, [](const AvailabilityDefinition& a) {
+    return a.what == "region ids" && !a.available;
+  });
+}
+
 }  // namespace
 
 Paused PausedOf(const Stream& stream) {
@@ -96,6 +103,9 @@ std::vector<std::string> LeftOutTexts(const Trace& trace) {
         FormatCount(paused.times, "time"), FormatSeconds(paused.seconds)));
   if (const FilterTotals filter = FilterOf(trace); !filter.path.empty())
     texts.push_back(FilterText(filter));
+  if (std::ranges::any_of(trace.processes(), RanOutOfIds))
+    texts.push_back(fmt::format("more than {}: those that came later have no id and are left out",
+                                FormatCount(std::uint64_t{kMaxRegion}, "function")));
   return texts;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a run left out on purpose: time while it was switched off, functions that were filtered.
+// What a run left out: time while it was switched off, functions that were filtered, and those for
+// which no id was left.
 #ifndef STIPPLE_ANALYSIS_REPORT_LEFT_OUT_H
 #define STIPPLE_ANALYSIS_REPORT_LEFT_OUT_H
 
@@ -32,7 +33,7 @@ struct FilterTotals {
 };
 FilterTotals FilterOf(const Trace& trace);
 
-/// Sentences about both, one each; none if nothing was left out and no filter was given.
+/// Sentences about all of these, one each; none if nothing was left out and no filter was given.
 std::vector<std::string> LeftOutTexts(const Trace& trace);
 
 }  // namespace stipple

@@ -92,6 +92,12 @@ expect 2 "--ranks" "$stipple" stats app.stipple --table profile --ranks 0-3; has
 expect 0 "canonical" "$stipple" print --canonical app.stipple
 [ "$(head -3 out | tr '\n' ';')" = "location 0 0 0;enter main;enter Fib(int);" ] || { fail canonical; head -3 out; }
 
+# As many visits as the formula says, 2 fib(21) - 1, of a program that is written for it.
+gcc -O2 $("$stipple" flags gcc) "$2/../apps/recursion.c" -o recursion || fail "compile"
+expect 0 "run of 21891 visits" "$stipple" run -- ./recursion 20
+expect 0 "profile of 21891 visits" "$stipple" stats recursion.stipple --table profile --format json
+has out '"region":"Fib","file":".*/recursion.c","line":9,"calls":21891,'
+
 # After kill -9 every event is there and the unclean end is told.
 expect 137 "killed" "$stipple" run -o killed.stipple -- ./app x
 expect 1 "check of the killed" "$stipple" check killed.stipple; has out "did not end in order"

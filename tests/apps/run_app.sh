@@ -6,17 +6,20 @@
 #   3. the events of the functions named in the golden text are that text. Other functions are free.
 #
 #   run_app.sh [--update] [--status N] [--stipple TOOL | --recorder LIBRARY] --work FOLDER
-#              --golden FILE [--library SOURCE] COMPILER FLAGS... SOURCE
+#              --golden FILE [--library SOURCE]... [--once NAME]... COMPILER FLAGS... SOURCE
 #              --plugin PLUGIN_FLAGS... [-- ARGUMENTS...]
 # `--update` (or UPDATE_GOLDEN=1) rewrites the golden text; a new one needs its `enter NAME` lines.
-# `--library` builds one more source as a shared object; its name is the app's first argument.
+# `--library` builds one more source as a shared object; their names are the app's first arguments.
+# `--once`: the archive defines the function of this linkage name once, however many objects have it.
 set -u
 
-update=${UPDATE_GOLDEN:-} status=0 stipple= recorder= work= golden= library=
+update=${UPDATE_GOLDEN:-} status=0 stipple= recorder= work= golden= libraries=() once=()
 while [[ ${1-} == --* ]]; do
   case $1 in
     --update) update=1; shift; continue ;;
-    --status | --stipple | --recorder | --work | --golden | --library) printf -v "${1#--}" %s "$2" ;;
+    --library) libraries+=("$2") ;;
+    --once) once+=("$2") ;;
+    --status | --stipple | --recorder | --work | --golden) printf -v "${1#--}" %s "$2" ;;
     *) echo "run_app.sh: unknown option $1" >&2; exit 2 ;;
   esac
   shift 2
@@ -31,19 +34,21 @@ arguments=("$@")
 fail() { echo "FAILED: $*" >&2; exit 1; }
 
 build() { # FOLDER FLAGS...
-  local folder=$1
+  local folder=$1 i
   shift
   mkdir -p "$folder"
   "${compile[@]}" "$@" -o "$folder/app" || fail "does not compile"
-  [[ -z $library ]] || "${compile[@]:0:${#compile[@]}-1}" "$library" -shared -fPIC "$@" \
-    -o "$folder/library.so" || fail "library does not compile"
+  for i in "${!libraries[@]}"; do
+    "${compile[@]:0:${#compile[@]}-1}" "${libraries[i]}" -shared -fPIC "$@" -o "$folder/library$i.so" ||
+      fail "${libraries[i]} does not compile"
+  done
 }
 
 run() { # FOLDER PREFIX...: stdout to FOLDER/out, exit status checked
-  local folder=$1
+  local folder=$1 i
   shift
   local command=("$folder/app")
-  [[ -z $library ]] || command+=("$folder/library.so")
+  for i in "${!libraries[@]}"; do command+=("$folder/library$i.so"); done
   "$@" "${command[@]}" "${arguments[@]}" >"$folder/out" 2>"$folder/err"
   local is=$?
   [[ $is == "$status" ]] || { cat "$folder/err" >&2; fail "exit status $is, not $status ($folder $*)"; }
@@ -67,6 +72,9 @@ cmp "$work/plain/out" "$work/traced/out" || fail "output differs without a runti
 if [[ -n $stipple ]]; then
   run "$work/traced" "$stipple" run --clock exact -o "$work/app.stipple" --
   "$stipple" print --canonical "$work/app.stipple" >"$work/events" || fail "stipple print"
+  for name in "${once[@]}"; do
+    [[ $(cat "$work"/app.stipple/* | grep -aoF "$name" | wc -l) == 1 ]] || fail "$name is not defined once"
+  done
 else
   run "$work/traced" env STIPPLE_RECORDER_FILE="$work/recorded" \
     STIPPLE_RECORDER_MODE="${STIPPLE_RECORDER_MODE-direct}" LD_PRELOAD="$recorder"

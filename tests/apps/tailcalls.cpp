@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Calls that end a function and become jumps: to each other, through a pointer, virtual, with an
 // exception thrown by the one that was jumped to. What GCC must not make a jump stays a call.
+// `tailcalls [STEPS [STEPS_WITH_STACK_ARGUMENTS]]`: the latter are no jumps with clang.
 #include <cstdio>
 #include <cstdlib>
 
@@ -59,6 +60,7 @@ Step volatile next_step = Pointed;
 
 int main(int argc, char** argv) {
   const long steps = argc > 1 ? std::atol(argv[1]) : 3;
+  const long stack_steps = argc > 2 ? std::atol(argv[2]) : steps;
   There there;
   Back back;
   there.other = &back;
@@ -66,7 +68,7 @@ int main(int argc, char** argv) {
   Walker* volatile first = &there;
   std::printf("%ld\n", first->Walk(steps, 0));
   std::printf("%ld\n", Pointed(steps, 0));
-  std::printf("%ld\n", More(steps, 2, 3, 4, 5, 6, 7, 8));
+  std::printf("%ld\n", More(stack_steps, 2, 3, 4, 5, 6, 7, 8));
   for (long kind = 0; kind <= steps; kind += steps) {
     try {
       ThrowsLater(kind);

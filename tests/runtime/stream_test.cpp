@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "run_writer.h"
 #include "walker.h"
@@ -10,6 +11,7 @@
 namespace {
 
 using stipple::EventWord;
+using stipple::RecordKind;
 using stipple_test::Directory;
 using stipple_test::RunWriter;
 using stipple_test::WalkArchive;
@@ -24,7 +26,8 @@ bool IsRounds(const std::vector<EventWord>& events) {
   return events.size() % 4 == 0;
 }
 
-/// The 40 bits of time begin anew every few minutes, perhaps now: later is what is less than half a turn ahead.
+/// The 40 bits of time begin anew every few minutes, perhaps now: later is what is less than half a
+/// turn ahead.
 bool IsInTimeOrder(const std::vector<EventWord>& events) {
   constexpr std::uint64_t kTurn = std::uint64_t{1} << 40;
   return std::is_sorted(events.begin(), events.end(), [](EventWord a, EventWord b) {
@@ -171,6 +174,30 @@ TEST(Region, KeepsItsIdThroughUnloading) {
   const Directory archive;
   EXPECT_EQ(RunWriter(archive.path(), "reload 1000").status, 0);
   EXPECT_EQ(OnlyStream(archive).definitions.at(stipple::RecordKind::kDefineRegion), 3);
+}
+
+/// In full, more functions than there are ids: the program runs on, what has an id is recorded as
+/// before, and the archive says once that functions were left out.
+TEST(Stream, OutlivesItsRegionIds) {
+  const bool full = std::getenv("STIPPLE_TEST_FULL") != nullptr;
+  const std::size_t objects = full ? 2050 : 10;
+  const std::size_t functions = 3 + 4096 * objects;
+  const Directory archive;
+  const auto run = RunWriter(archive.path(), "exhaust " + std::to_string(4096 * objects));
+  EXPECT_EQ(run.status, 3);
+  EXPECT_EQ(run.errors, "");
+  const WalkedStream stream = OnlyStream(archive);
+  EXPECT_TRUE(stream.problems.empty());
+  EXPECT_EQ(functions > stipple::kMaxRegion, full);
+  EXPECT_EQ(stream.regions.size(), std::min<std::size_t>(functions, stipple::kMaxRegion));
+  const auto note = stream.definitions.find(RecordKind::kAvailability);
+  EXPECT_EQ(note == stream.definitions.end() ? 0 : note->second, full ? 1 : 0);
+  // The first function of each object is visited, if it has an id.
+  const std::size_t recorded = full ? (stipple::kMaxRegion - 4) / 4096 + 1 : objects;
+  const auto events = stream.threads.at(0).Events();
+  ASSERT_GE(events.size(), 4u);
+  EXPECT_TRUE(IsRounds({events.end() - 4, events.end()}));
+  EXPECT_EQ(events.size(), 2 * recorded + 4);
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
 #include <string_view>
 #include <thread>
 #include <vector>
@@ -140,9 +141,9 @@ int Modes(long rounds) {
   return 0;
 }
 
-/// Switches ids on and off while other threads run through them. On a loaded machine the switcher may
-/// not be scheduled while `rounds` pass, or sleep with all switched off: hence the visits before and
-/// after, and rounds until it has switched often enough.
+/// Switches ids on and off while other threads run through them. On a loaded machine the switcher
+/// may not be scheduled while `rounds` pass, or sleep with all switched off: hence the visits
+/// before and after, and rounds until it has switched often enough.
 int Toggle(long rounds) {
   const std::uint32_t ids[] = {object->descriptors[0].id, object->descriptors[1].id};
   Visit(0);
@@ -244,6 +245,26 @@ int Reload(long rounds) {
   return 0;
 }
 
+/// Defines so many functions: one object that comes again and again, its functions on other lines.
+int Exhaust(long functions) {
+  static stipple_descriptor descriptors[4096];
+  static const char name[] = "f";
+  for (std::uint32_t line = 1; line <= functions;) {
+    for (stipple_descriptor& d : descriptors)
+      d = {0, line++, name - reinterpret_cast<const char*>(&d.name), 0};
+    stipple_dso dso{};
+    dso.abi = STIPPLE_ABI;
+    dso.descriptor_bytes = sizeof(stipple_descriptor);
+    dso.begin = std::begin(descriptors);
+    dso.end = std::end(descriptors);
+    stipple_register(&dso);
+    Leave(dso, Enter(dso, descriptors[0]));
+    stipple_unregister(&dso);
+  }
+  Work(1);
+  return 3;
+}
+
 struct Behaviour {
   std::string_view name;
   int (*run)(long number);
@@ -256,7 +277,7 @@ constexpr Behaviour kBehaviours[] = {
     {"modes", Modes},        {"toggle", Toggle},
     {"storm", Storm},        {"manual", Manual},
     {"reload", Reload},      {"thread-ends", ThreadEnds},
-    {"close-all", CloseAll},
+    {"close-all", CloseAll}, {"exhaust", Exhaust},
 };
 
 }  // namespace

@@ -1,0 +1,5 @@
+// SPDX-License-Identifier: MIT
+// The second library of one_definition.cpp.
+#include "one_definition.h"
+
+extern "C" __attribute__((visibility("default"))) void InLibrary() { Both("library 2", 2); }
