@@ -17,9 +17,15 @@ function assert(ok, ...)
   return real(ok, ...)
 end'
 
+# LPeg's tests. The quick ones leave out a pattern of 65 535 captures: most of the events.
+lpeg_tests() {
+  [ "$size" = full ] || local large='/large dynamic Cc/,/^end/{/^end/!s/.*//}'
+  sed "${large:-}" test.lua
+}
+
 suite() {
   local lua=$PWD/lua5.4/src/lua program output status
-  (cd lua-lpeg && LUA_CPATH='./?.so' LUA_PATH='./?.lua' "$lua" -e "$lpeg_assertions" test.lua 2>&1)
+  (cd lua-lpeg && lpeg_tests | LUA_CPATH='./?.so' LUA_PATH='./?.lua' "$lua" -e "$lpeg_assertions" - 2>&1)
   echo "lpeg status $?"
   for program in lua5.1/test/*.lua; do
     [ "$program" != lua5.1/test/life.lua ] || continue  # 35 million events of the same few functions
