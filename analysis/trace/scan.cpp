@@ -35,6 +35,10 @@ constexpr std::uint64_t BytesOf(RecordKind kind) {
       return sizeof(Unwound);
     case RecordKind::kStackSwitch:
       return sizeof(StackSwitch);
+    case RecordKind::kRegionMode:
+      return sizeof(RegionMode);
+    case RecordKind::kCountedEnter:
+      return sizeof(CountedEnter);
     default:
       return 0;
   }

@@ -122,8 +122,13 @@ enum class RecordKind : std::uint8_t {
   kTimeStamp = 16,   // a thread that was silent for long
   kThreadEnd = 17,
   kClockStep = 18,
-  kJumpPoint = 19,    // setjmp, getcontext
-  kStackSwitch = 20,  // swapcontext, setcontext, the end of a context
+  kJumpPoint = 19,     // setjmp, getcontext
+  kStackSwitch = 20,   // swapcontext, setcontext, the end of a context
+  kCountedEnter = 21,  // a timed visit of a region whose other visits are counted or have no time
+  kThreadSend = 22,    // user.h: a message to another thread
+  kThreadReceive = 23,
+  kCallPath = 24,  // frames below the events: code without instrumentation
+  kCrash = 25,     // a signal ends the process: a thread's stack
   // Definitions.
   kDefineRegion = 64,
   kDefineLocation = 65,
@@ -141,6 +146,9 @@ enum class RecordKind : std::uint8_t {
   kDefineCode = 77,
   kSwitched = 78,
   kFiltered = 79,
+  kCalibration = 80,    // what an event costs, and how much of that lies inside the visit
+  kOverwritten = 81,    // a ring dropped what came before
+  kDefineChannel = 82,  // user.h: what messages between threads go through
 };
 
 // The header of an extended record: kind in the low 23 bits, bit 23 set once the record is closed,
@@ -278,8 +286,8 @@ struct TimeStamp {
 };
 static_assert(sizeof(TimeStamp) == 24);
 
-// Jumps. A thread's jump points are told apart by the stack pointer that they go back to: of two with
-// the same one only the later is alive.
+// Jumps. A thread's jump points are told apart by the stack pointer that they go back to: of two
+// with the same one only the later is alive.
 
 /// The program may come back to here, and to the frames that are open now, by a jump.
 struct JumpPoint {
@@ -290,8 +298,9 @@ struct JumpPoint {
 };
 static_assert(sizeof(JumpPoint) == 24);
 
-/// The program jumps to the last jump point with this `stack`: frames opened since are left. A point
-/// that the stream does not have was set before its thread's first event: all frames are left.
+/// The program jumps to the last jump point with this `stack`: frames opened since are left. A
+/// point that the stream does not have was set before its thread's first event: all frames are
+/// left.
 struct Unwound {
   static constexpr RecordKind kKind = RecordKind::kUnwound;
   EventWord header;
@@ -310,6 +319,43 @@ struct StackSwitch {
   std::uint64_t to;
 };
 static_assert(sizeof(StackSwitch) == 32);
+
+/// How much of a region's visits is recorded, from now on in all threads of the process. The budget
+/// (--clock budget:P) takes one step at a time.
+enum class RegionModeKind : std::uint32_t {
+  kTimed = 0,    // each enter and leave has its time
+  kNoClock = 1,  // each enter and leave is an event without a time
+  kCounted = 2,  // visits are counted, events are written for a stride of them
+};
+
+/// The budget changed how visits of a region are recorded. Visits that are open end as they began.
+struct RegionMode {
+  static constexpr RecordKind kKind = RecordKind::kRegionMode;
+  EventWord header;
+  std::uint64_t ticks;
+  std::uint32_t region;
+  RegionModeKind mode;
+  std::uint64_t visits;      // by this process until now, as far as the budget has seen them
+  std::uint64_t mean_ticks;  // of the visits that the decision rests on, enter to leave
+};
+static_assert(sizeof(RegionMode) == 40);
+
+enum class CountedPurpose : std::uint32_t {
+  kSample = 1,  // one visit of a stride; stands for those before it, back to the last sample
+  kInside = 2,  // directly inside a sample, whose exclusive time would not be known without it
+};
+
+/// Enters a region whose mode is not kTimed, with a time, read with the pipeline drained. Its leave
+/// is an event like any other.
+struct CountedEnter {
+  static constexpr RecordKind kKind = RecordKind::kCountedEnter;
+  EventWord header;
+  std::uint64_t ticks;
+  std::uint32_t region;
+  CountedPurpose purpose;
+  std::uint64_t visits;  // of the region by this thread, without any event, since its last sample
+};
+static_assert(sizeof(CountedEnter) == 32);
 
 // Definitions. Text follows the struct: its parts without terminators, one after the other,
 // zero-padded to 8 bytes.
@@ -412,8 +458,8 @@ struct ProcessEnd {
 };
 static_assert(sizeof(ProcessEnd) == 40);
 
-/// Exact visits of the regions that were counted only; `entries` pairs of (u32 region, u32 zero,
-/// u64 visits) follow.
+/// Visits without any event since the thread's last sample of the region (CountedEnter); `entries`
+/// of (u32 region, u32 thread, u64 visits) follow.
 struct VisitCounts {
   static constexpr RecordKind kKind = RecordKind::kVisitCounts;
   EventWord header;
@@ -474,6 +520,22 @@ struct Switched {
   std::uint32_t region;  // 0: everything; else this region alone
 };
 static_assert(sizeof(Switched) == 24);
+
+/// What events cost in this process, measured when it began: medians, in 1/256 ticks of the clock.
+/// A visit is an enter and a leave with nothing between; its inner part is what its own times hold.
+struct Calibration {
+  static constexpr RecordKind kKind = RecordKind::kCalibration;
+  EventWord header;
+  std::uint32_t timed_visit;  // both events, back to back with others
+  std::uint32_t timed_inner;
+  std::uint32_t sampled_visit;  // a CountedEnter and its leave, pipeline drained
+  std::uint32_t sampled_inner;
+  std::uint32_t no_clock_visit;
+  std::uint32_t counted_visit;
+  std::uint32_t clock_read;  // one reading
+  std::uint32_t reserved;
+};
+static_assert(sizeof(Calibration) == 40);
 
 /// What the filter did to the functions of one object; the filter's path follows. Records add up.
 struct Filtered {
