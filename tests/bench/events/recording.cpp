@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What an event costs when the real runtime records it in a real archive: page faults, file system
-// and chunk switches included. The same kernels as runner.cpp's, the recorded variant and the floor
-// in turns of a million events, CPU time of the thread. Each measurement is a process of its own,
-// so that each has a stream of its own, whose events are counted afterwards.
+// and chunk switches included. The same kernels as runner.cpp's: without events, with the floor's
+// and recorded, in turns of a million events, CPU time of the thread. Each measurement is a process
+// of its own, so that each has a stream of its own, whose events are counted afterwards.
 //
 //   bench_recording DIRECTORY [EVENTS] [KERNEL...]    archives are made in DIRECTORY and removed
 #include <sys/mman.h>
@@ -29,7 +29,8 @@ constexpr std::uint64_t kMostRounds = 1000;
 
 /// Written by the measuring process.
 struct Result {
-  double floor_ns[kMostRounds];  // per call
+  double plain_ns[kMostRounds];  // per call
+  double floor_ns[kMostRounds];
   double recorded_ns[kMostRounds];
 };
 
@@ -51,13 +52,15 @@ double NsPerCall(stipple_bench::Kernel kernel) {
   return (CpuNs() - start) / double(kCallsPerRound);
 }
 
-void MeasureHere(const std::string& kernel_start, const std::string& archive, std::uint64_t rounds,
-                 Result* result) {
+void MeasureHere(const std::string& kernel_start, const char* clock, const std::string& archive,
+                 std::uint64_t rounds, Result* result) {
   setenv("STIPPLE_ARCHIVE", archive.c_str(), 1);
-  setenv("STIPPLE_CLOCK", "exact", 1);
+  setenv("STIPPLE_CLOCK", clock, 1);
+  const auto plain = stipple_bench::LoadKernel(kernel_start + "plain.so");
   const auto floor = stipple_bench::LoadKernel(kernel_start + "floor.so");
   const auto recorded = stipple_bench::LoadKernel(kernel_start + "exact.so");
   for (std::uint64_t round = 0; round < rounds; ++round) {
+    result->plain_ns[round] = NsPerCall(plain);
     result->floor_ns[round] = NsPerCall(floor);
     result->recorded_ns[round] = NsPerCall(recorded);
   }
@@ -91,8 +94,25 @@ Stream ReadStream(const std::string& archive) {
   return stream;
 }
 
-bool Measure(const std::string& kernel, const std::string& compiler, const std::string& directory,
-             std::uint64_t rounds) {
+/// Medians over the rounds of what the floor and the recording add to the plain kernel.
+void Print(const std::string& kernel, const char* compiler, const char* clock, const Result& result,
+           std::uint64_t rounds, const Stream& stream) {
+  const double events_per_call = double(stream.events) / double(rounds * kCallsPerRound);
+  std::vector<double> floor, recorded;
+  for (std::uint64_t i = 0; i < rounds; ++i) {
+    floor.push_back((result.floor_ns[i] - result.plain_ns[i]) / events_per_call);
+    recorded.push_back((result.recorded_ns[i] - result.plain_ns[i]) / events_per_call);
+  }
+  using stipple_bench::Quantile;
+  std::printf("%-5s %-6s %-9s %8.2f %8.2f  %7.2f..%-7.2f %7.3f %8.2f %8.1f\n", kernel.c_str(),
+              compiler, clock, Quantile(floor, 0.5), Quantile(recorded, 0.5),
+              Quantile(recorded, 0.1), Quantile(recorded, 0.9),
+              Quantile(recorded, 0.5) / Quantile(floor, 0.5),
+              double(stream.bytes) / double(stream.events), double(stream.events) * 1e-6);
+}
+
+bool Measure(const std::string& kernel, const char* compiler, const char* clock,
+             const std::string& directory, std::uint64_t rounds) {
   const std::string archive = directory + "/" + kernel + "_" + compiler + ".stipple";
   std::filesystem::create_directory(archive);
   void* shared =
@@ -102,7 +122,8 @@ bool Measure(const std::string& kernel, const std::string& compiler, const std::
   std::fflush(stdout);
   const pid_t child = fork();
   if (child == 0) {
-    MeasureHere(BENCH_EVENTS_DIR "/" + kernel + "_" + compiler + "_", archive, rounds, result);
+    MeasureHere(BENCH_EVENTS_DIR "/" + kernel + "_" + compiler + "_", clock, archive, rounds,
+                result);
     std::exit(0);
   }
   int status = -1;
@@ -110,23 +131,7 @@ bool Measure(const std::string& kernel, const std::string& compiler, const std::
   const Stream stream = ReadStream(archive);
   std::filesystem::remove_all(archive);
   if (stream.events == 0) return false;
-  const double events_per_call = double(stream.events) / double(rounds * kCallsPerRound);
-  std::vector<double> floor, recorded, ratio;
-  double floor_sum = 0, recorded_sum = 0;
-  for (std::uint64_t i = 0; i < rounds; ++i) {
-    floor.push_back(result->floor_ns[i] / events_per_call);
-    recorded.push_back(result->recorded_ns[i] / events_per_call);
-    ratio.push_back(recorded[i] / floor[i]);
-    floor_sum += floor[i];
-    recorded_sum += recorded[i];
-  }
-  std::printf("%-5s %-6s %8.2f %9.2f %8.2f %7.3f  %6.3f..%-6.3f %7.3f %9.2f %8.1f\n",
-              kernel.c_str(), compiler.c_str(), stipple_bench::Quantile(floor, 0.5),
-              stipple_bench::Quantile(recorded, 0.5),
-              stipple_bench::Quantile(recorded, 0.5) - stipple_bench::Quantile(floor, 0.5),
-              stipple_bench::Quantile(ratio, 0.5), stipple_bench::Quantile(ratio, 0.1),
-              stipple_bench::Quantile(ratio, 0.9), recorded_sum / floor_sum,
-              double(stream.bytes) / double(stream.events), double(stream.events) * 1e-6);
+  Print(kernel, compiler, clock, *result, rounds, stream);
   munmap(shared, sizeof(Result));
   return true;
 }
@@ -142,16 +147,18 @@ int main(int argc, char** argv) {
   const auto rounds = std::uint64_t(std::clamp(events / double(2 * kCallsPerRound), 1.0, 1e3));
   std::vector<std::string> kernels(argv + std::min(argc, 3), argv + argc);
   if (kernels.empty()) kernels = {"leaf", "mix"};
-  std::printf("%-5s %-6s %8s %9s %8s %7s  %14s %7s %9s %8s\n", "", "", "floor", "recorded", "more",
-              "ratio", "10%..90%", "mean", "bytes", "millions");
+  std::printf("%-5s %-6s %-9s %8s %8s  %16s %7s %8s %8s\n", "", "", "clock", "floor", "recorded",
+              "10%..90%", "ratio", "bytes", "millions");
   for (const std::string& kernel : kernels)
     for (const char* compiler : {"gcc", "llvm"})
-      if (!Measure(kernel, compiler, argv[1], rounds)) {
-        std::fprintf(stderr, "bench_recording: %s %s: not recorded\n", kernel.c_str(), compiler);
-        return 2;
-      }
+      for (const char* clock : {"exact", "sparse:8"})
+        if (!Measure(kernel, compiler, clock, argv[1], rounds)) {
+          std::fprintf(stderr, "bench_recording: %s %s: not recorded\n", kernel.c_str(), compiler);
+          return 2;
+        }
   std::printf(
-      "ns of CPU time per event, the function's own work included; medians of %llu rounds;\n"
-      "ratio: recorded to floor round by round; mean: of the sums; bytes: per event\n",
+      "ns of CPU time that an event adds, medians of %llu rounds; floor: read the clock, store 8 "
+      "bytes in memory;\n"
+      "ratio: recorded to floor; bytes: per event\n",
       static_cast<unsigned long long>(rounds));
 }

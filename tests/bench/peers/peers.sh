@@ -2,7 +2,7 @@
 # Part of tests/bench/run: the same program traced by stipple and by others, one after the other in each round. Each is
 # set up for the least time: as many bytes of buffer as take all events, no system or library calls besides.
 
-readonly peer_kinds=(plain-gcc plain-llvm stipple-gcc stipple-llvm uftrace xray lttng)
+readonly peer_kinds=(plain-gcc plain-llvm stipple-gcc stipple-llvm sparse-gcc sparse-llvm uftrace xray lttng)  # sparse: stipple, --clock sparse:8
 
 peer_build() { # KIND KERNEL
   local dir=${BASH_SOURCE[0]%/*} source compiler flags=()
@@ -11,8 +11,8 @@ peer_build() { # KIND KERNEL
   case $1 in
     plain-gcc) ;;
     plain-llvm) compiler=clang-14 ;;
-    stipple-gcc) flags=(-fplugin="$build/lib/stipple/gcc-12/stipple.so" -fplugin-arg-stipple-instruction-threshold=1) ;;
-    stipple-llvm)
+    stipple-gcc | sparse-gcc) flags=(-fplugin="$build/lib/stipple/gcc-12/stipple.so" -fplugin-arg-stipple-instruction-threshold=1) ;;
+    stipple-llvm | sparse-llvm)
       compiler=clang-14
       flags=(-fplugin="$build/lib/stipple/llvm-14/stipple.so" -fpass-plugin="$build/lib/stipple/llvm-14/stipple.so"
         -mllvm -stipple-instruction-threshold=1)
@@ -52,12 +52,13 @@ lttng_session() { # start|stop
 
 # Runs a kernel under its tracer; prints ns per call and, of the events that it made, how many are not in the trace.
 peer_run() { # KIND KERNEL CALLS
-  local program=$work/$2.$1 recorded=$((2 * $3))
+  local program=$work/$2.$1 recorded=$((2 * $3)) clock
   rm -rf "$work/peer.trace" "$work/lttng"
   case $1 in
     plain-*) "$program" "$3" 2>"$work/peer.ns" ;;
-    stipple-*)
-      mkdir "$work/peer.trace" && STIPPLE_ARCHIVE="$work/peer.trace" STIPPLE_CLOCK=exact \
+    stipple-* | sparse-*)
+      [ "${1%-*}" = stipple ] && clock=exact || clock=sparse:8
+      mkdir "$work/peer.trace" && STIPPLE_ARCHIVE="$work/peer.trace" STIPPLE_CLOCK=$clock \
         LD_PRELOAD="$build/lib/stipple/libstipple.so" "$program" "$3" 2>"$work/peer.ns" || return 1
       recorded=$(events_of "$work/peer.trace")
       ;;
@@ -138,6 +139,12 @@ run_peers() {
       ours=$(awk -v kind=$kind '$2 == kind { print $4 }' "$work/peers.$kernel")
       verdict "$(awk -v a="$best" -v b="$ours" 'BEGIN { printf "%.2f", a / b }')" "$([ $kernel = leaf ] && echo 2.5 || echo 1.5)" \
         "$kernel, added per event, best of the others to $kind" at-least
+    done
+    best=$(awk '$2 == "uftrace" { print $4 }' "$work/peers.$kernel")
+    for kind in sparse-gcc sparse-llvm; do
+      ours=$(awk -v kind=$kind '$2 == kind { print $4 }' "$work/peers.$kernel")
+      [ -z "$best" ] || verdict "$(awk -v a="$best" -v b="$ours" 'BEGIN { printf "%.2f", a / b }')" "$([ $kernel = leaf ] && echo 8 || echo 4)" \
+        "$kernel, added per event, uftrace to $kind:8" at-least
     done
   done
 }
