@@ -75,6 +75,7 @@ class Slow : public testing::Test {
   static void SetUpTestSuite() {
     archive_ = new stipple_test::Directory;
     setenv("STIPPLE_ARCHIVE", archive_->path().c_str(), 1);
+    setenv("STIPPLE_CLOCK", "exact", 1);
     object_ = new Object<1>(kNames);
   }
   static void TearDownTestSuite() { delete archive_; }
@@ -92,7 +93,10 @@ TEST_F(Slow, EveryRegisterComesBack) {
   };
   const Row rows[] = {{id, id},
                       {id | STIPPLE_LEAVE, id | STIPPLE_LEAVE},
+                      {id | STIPPLE_NO_CLOCK, id | STIPPLE_SAMPLED},  // the first visit is a sample
+                      {id | STIPPLE_SAMPLED | STIPPLE_LEAVE, id | STIPPLE_SAMPLED | STIPPLE_LEAVE},
                       {id | STIPPLE_NO_CLOCK, id | STIPPLE_NO_CLOCK},
+                      {id | STIPPLE_NO_CLOCK | STIPPLE_LEAVE, id | STIPPLE_NO_CLOCK | STIPPLE_LEAVE},
                       {id | STIPPLE_COUNT_ONLY, 0},
                       {id | STIPPLE_COUNT_ONLY, 0}};
   const std::uint32_t wide = __builtin_cpu_supports("avx") ? 1 : 0;
