@@ -218,6 +218,7 @@ void EndThread(void* pointer) {
   if (thread->tid == 0 || process == nullptr) return;
   Holding holding(process->lock);
   thread->ended = 1;
+  if (HasRing(process->ring)) return EndRingThread(*process, *thread, record.ticks);
   if (thread->chunk != nullptr)
     Syscall(SYS_madvise, Argument(thread->chunk), static_cast<long>(thread->chunk_bytes),
             MADV_DONTNEED);
