@@ -79,6 +79,14 @@ std::string TimingText(const Trace& trace, const Process& p, const EventWord* re
       return "unwound";
     case RecordKind::kStackSwitch:
       return "stack switch";
+    case RecordKind::kOpenFrames: {
+      const auto r = RecordAt<OpenFrames>(record);
+      return r.unknown != 0 ? "open frames unknown" : fmt::format("{} open frames", r.depth);
+    }
+    case RecordKind::kClockStep: {
+      const auto r = RecordAt<ClockStep>(record);
+      return fmt::format("clock step, from {} to {} ticks", r.before_ticks, r.ticks);
+    }
     default:
       return fmt::format("record of kind {}", static_cast<unsigned>(KindOf(*record)));
   }

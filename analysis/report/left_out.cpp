@@ -96,6 +96,13 @@ FilterTotals FilterOf(const Trace& trace) {
 
 std::vector<std::string> LeftOutTexts(const Trace& trace) {
   std::vector<std::string> texts;
+  if (trace.kept())
+    texts.push_back(fmt::format(
+        "keeps only the last {}: from {} after the run's begin on, which is time 0 here; {} before "
+        "were overwritten (--max-bytes)",
+        FormatSeconds(static_cast<double>(trace.SpanNs()) * 1e-9),
+        FormatSeconds(trace.kept()->from_s),
+        FormatCount(trace.kept()->overwritten_events, "event")));
   if (const Paused paused = LongestPaused(trace); paused.times != 0)
     texts.push_back(fmt::format(
         "recording was switched off {}, {} in all: nothing of that time is shown, and functions "

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a run left out: time while it was switched off, functions that were filtered, and those for
-// which no id was left.
+// What a run left out: the begin of a ring, time while it was switched off, functions that were
+// filtered, and those for which no id was left.
 #ifndef STIPPLE_ANALYSIS_REPORT_LEFT_OUT_H
 #define STIPPLE_ANALYSIS_REPORT_LEFT_OUT_H
 

@@ -59,7 +59,9 @@ LocationProfile ProfileOf(const Trace& trace, const Location& location,
                           const Selection& selection) {
   const bool whole = selection.WholeTime();
   ProfileVisitor visitor(trace.ProcessOf(location).RegionCount(),
-                         whole ? 0 : trace.TicksAt(location, selection.begin_ns),
+                         whole ? 0
+                               : std::max(trace.TicksAt(location, selection.begin_ns),
+                                          trace.kept() ? location.first_ticks : 0),
                          whole ? kNoTickLimit : trace.TicksAt(location, selection.end_ns), nullptr);
   trace.Scan(location, visitor);
   visitor.Finish(location.last_ticks);

@@ -23,6 +23,10 @@ ProfileVisitor::Hot ProfileVisitor::Jump(Hot hot, const EventWord* record, std::
   const std::uint64_t now = std::clamp(ticks, hot.begin, hot.end);
   hot.top->region->exclusive += now - hot.last;
   hot.last = now;
+  if (KindOf(*record) == RecordKind::kOpenFrames) {
+    BeginOpen(hot, record, ticks);
+    return hot;
+  }
   const std::uint32_t before = points_.context();
   const auto depth = [&] { return static_cast<std::size_t>(hot.top - stack_.data()); };
   const std::optional<StackPlace> place = points_.After(record, depth());
@@ -30,6 +34,24 @@ ProfileVisitor::Hot ProfileVisitor::Jump(Hot hot, const EventWord* record, std::
   if (place->context != before) SwitchContext(hot, before, place->context);
   while (depth() > place->depth) PopLeft(hot, ticks);
   return hot;
+}
+
+/// Begins with the frames that were open when the rest of a ring began. They are no calls, and
+/// count from there on.
+void ProfileVisitor::BeginOpen(Hot& hot, const EventWord* record, std::uint64_t ticks) {
+  begin_is_known_ = AllOpenKnown(record);
+  points_.Begin(record);
+  for (const std::uint32_t r :
+       OpenRegions(record, static_cast<std::uint32_t>(regions_.size() - 1))) {
+    if (hot.top == hot.limit) {
+      hot.top = Grow();
+      hot.limit = Limit();
+    }
+    RegionTicks* const region = &regions_[r];
+    ++region->open;
+    *++hot.top = {region, hot.last};
+    if (region->is_watched != 0) collector_->Function(r, false, ticks);
+  }
 }
 
 /// Takes the frames of one context off the stack and puts those of another there, as if all had

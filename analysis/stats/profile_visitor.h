@@ -109,19 +109,24 @@ class ProfileVisitor {
   }
   /// By region of the process.
   std::span<const RegionTicks> regions() const { return {regions_.data(), regions_.size() - 1}; }
-  std::uint64_t leaves_without_enter() const { return leaves_without_enter_; }
+  /// None if the rest of a ring began with frames that are not known.
+  std::uint64_t leaves_without_enter() const {
+    return begin_is_known_ ? leaves_without_enter_ : 0;
+  }
   /// Frames whose end was seen only by the leave of one further out.
   std::uint64_t enters_without_leave() const { return enters_without_leave_; }
 
  private:
   static bool IsJump(RecordKind kind) {
     return kind == RecordKind::kJumpPoint || kind == RecordKind::kUnwound ||
-           kind == RecordKind::kStackSwitch || kind == RecordKind::kThreadEnd;
+           kind == RecordKind::kStackSwitch || kind == RecordKind::kThreadEnd ||
+           kind == RecordKind::kOpenFrames;
   }
   // By value: a hot part whose address is known elsewhere would not stay in registers.
   Hot Repair(Hot hot, const RegionTicks* region, std::uint64_t ticks);
   Hot Jump(Hot hot, const EventWord* record, std::uint64_t ticks);
   void SwitchContext(Hot& hot, std::uint32_t from, std::uint32_t to);
+  void BeginOpen(Hot& hot, const EventWord* record, std::uint64_t ticks);
   void PopLeft(Hot& hot, std::uint64_t ticks);
   Frame* Limit() { return stack_.data() + stack_.size() - 1; }
   /// Doubles a full stack; returns its top.
@@ -136,6 +141,7 @@ class ProfileVisitor {
   MpiCollector* collector_;
   std::uint64_t leaves_without_enter_ = 0;
   std::uint64_t enters_without_leave_ = 0;
+  bool begin_is_known_ = true;
   JumpPoints points_;
   std::unordered_map<std::uint32_t, std::vector<RegionTicks*>> waiting_;  // by context
   Hot hot_{};

@@ -50,6 +50,15 @@ Json FilterJson(const Trace& trace) {
   return {{"file", filter.path}, {"functions", filter.functions}, {"filtered", filter.filtered}};
 }
 
+/// Null: nothing was overwritten.
+Json RingJson(const Trace& trace) {
+  if (!trace.kept()) return nullptr;
+  return {{"kept_from_s", trace.kept()->from_s},
+          {"kept_s", Seconds(trace.SpanNs())},
+          {"overwritten_events", trace.kept()->overwritten_events},
+          {"overwritten_bytes", trace.kept()->overwritten_bytes}};
+}
+
 /// Null: more than can be counted.
 Json LostJson(const TraceHealth& health) {
   return health.LostUncounted() ? Json(nullptr) : Json(health.LostEvents());
@@ -71,9 +80,13 @@ std::string InfoJson(const Analysis& info) {
                          {"thread", l.thread},
                          {"events", trace.CountsOf(l).Events()}});
   Json problems = Json::array();
-  for (const Problem& p : info.health.problems())
+  for (const Problem& p : info.health.problems()) {
     problems.push_back(
         {{"problem", EntryOf(p.defect).name}, {"where", p.where}, {"count", p.count}});
+    if (!p.when) continue;
+    problems.back()["from_s"] = Seconds(p.when->from_ns);
+    problems.back()["to_s"] = Seconds(p.when->to_ns);
+  }
   const Json json = {{"program", trace.Program()},
                      {"locations", locations},
                      {"ranks", trace.RankCount()},
@@ -85,6 +98,7 @@ std::string InfoJson(const Analysis& info) {
                      {"span_s", Seconds(trace.SpanNs())},
                      {"paused_s", LongestPaused(trace).seconds},
                      {"paused_times", LongestPaused(trace).times},
+                     {"ring", RingJson(trace)},
                      {"filter", FilterJson(trace)},
                      {"clock", ClockJson(info)},
                      {"recorded", RecordedJson(trace)},
@@ -123,6 +137,11 @@ std::string InfoText(const Analysis& info) {
   if (const Paused paused = LongestPaused(trace); paused.times != 0)
     text += fmt::format("paused     {}, {}\n", FormatSeconds(paused.seconds),
                         FormatCount(paused.times, "time"));
+  if (trace.kept())
+    text += fmt::format("ring       keeps the last {}, from {} on; {} overwritten\n",
+                        FormatSeconds(Seconds(trace.SpanNs())),
+                        FormatSeconds(trace.kept()->from_s),
+                        FormatCount(trace.kept()->overwritten_events, "event"));
   if (const FilterTotals filter = FilterOf(trace); !filter.path.empty())
     text += fmt::format("filter     {}: {} of {} left out\n", filter.path,
                         FormatCount(static_cast<std::int64_t>(filter.filtered)),

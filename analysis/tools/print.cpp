@@ -38,7 +38,14 @@ class Output {
 };
 
 /// Regions of the frames that the event ended without being their leave.
-std::span<const std::uint32_t> Follow(CallStack& stack, const Event& event) {
+std::span<const std::uint32_t> Follow(const Process& process, CallStack& stack,
+                                      const Event& event) {
+  if (event.record != nullptr && KindOf(*event.record) == RecordKind::kOpenFrames) {
+    std::vector<std::uint32_t> regions = OpenRegions(event.record, process.RegionCount());
+    for (std::uint32_t& region : regions) region = process.regions[region];
+    stack.Begin(event.record, regions);
+    return {};
+  }
   return event.record != nullptr ? stack.Record(event.record)
                                  : stack.Function(event.region, event.leave);
 }
@@ -52,8 +59,8 @@ void PrintCanonical(const Trace& trace, const Selection& selection) {
     CallStack stack;
     while (const Event* event = cursor.Next()) {
       const std::uint32_t context = stack.context();
-      const std::span<const std::uint32_t> left = Follow(stack, *event);
-      if (!selection.WholeTime() && !selection.HasTime(trace.TimeNs(l, event->ticks))) continue;
+      const std::span<const std::uint32_t> left = Follow(trace.ProcessOf(l), stack, *event);
+      if ((!selection.WholeTime() || trace.kept()) && !selection.HasTime(trace.TimeNs(l, event->ticks))) continue;
       if (stack.context() != context) out.Line("context {}", stack.context());
       for (const std::uint32_t region : left)
         out.Line("{} {}", event->record != nullptr ? "unwound" : "unclosed",
@@ -97,7 +104,8 @@ std::string JumpText(const Trace& trace, const CallStack& stack, std::uint32_t c
 void PrintOne(const Trace& trace, const Selection& selection, Reader& r, Output& out) {
   const bool enter = r.event->record == nullptr && !r.event->leave;
   const std::uint32_t context = r.stack.context();
-  const std::size_t left = Follow(r.stack, *r.event).size();
+  const std::size_t left =
+      Follow(trace.ProcessOf(r.cursor.location()), r.stack, *r.event).size();
   if (!selection.HasTime(r.time_ns)) return;
   std::string text = EventText(trace, r.cursor.location(), *r.event);
   if (r.event->record != nullptr)

@@ -33,6 +33,7 @@ struct RunOptions {
   std::string clock = "exact";
   std::string filter;  // empty: none
   bool paused = false;
+  std::string max_bytes;  // empty: no limit
   std::vector<std::string> command;
 };
 
@@ -51,6 +52,9 @@ std::optional<RunOptions> ParseRun(const Arguments& arguments) {
       ->type_name("FILE");
   app.add_flag("--paused", options.paused,
                "begin switched off; stipple_start() or SIGUSR2 switches on");
+  app.add_option("--max-bytes", options.max_bytes,
+                 "keep only the last part of the run: N bytes of events for each process (64M, 2G)")
+      ->type_name("N");
   const auto dashes = std::ranges::find(arguments, "--");
   if (!Parse(app, {arguments.begin(), dashes})) return std::nullopt;
   if (dashes == arguments.end() || dashes + 1 == arguments.end())
@@ -73,6 +77,24 @@ void CheckClock(const std::string& clock) {
   throw InputError("--clock", fmt::format("'{}' is unknown; known: exact, sparse:N with N a power "
                                           "of two up to {}",
                                           clock, kMostSparse));
+}
+
+/// "64M" as bytes. A ring has 64 places at least, and 16 KiB is the least place.
+std::uint64_t ParseMaxBytes(const std::string& text) {
+  constexpr std::uint64_t kLeast = 1 << 20, kMost = std::uint64_t{1} << 46;
+  std::uint64_t bytes = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, bytes);
+  const std::string_view unit(stop, static_cast<std::size_t>(end - stop));
+  const int shift = unit.empty() ? 0 : unit == "K" ? 10 : unit == "M" ? 20 : unit == "G" ? 30 : -1;
+  if (error != std::errc() || shift < 0 || bytes > kMost >> shift)
+    throw InputError("--max-bytes", fmt::format("'{}' is no size; known: bytes as 64M, 2G or "
+                                                "67108864",
+                                                text));
+  bytes <<= shift;
+  if (bytes < kLeast)
+    throw InputError("--max-bytes", fmt::format("'{}' is too little: the least is 1M", text));
+  return bytes;
 }
 
 /// Refuses a file that is no filter.
@@ -154,6 +176,7 @@ std::vector<std::string> Prepare(const RunOptions& options, const std::string& p
   };
   set_or_unset("STIPPLE_FILTER", options.filter.empty() ? "" : fs::absolute(options.filter));
   set_or_unset("STIPPLE_PAUSED", options.paused ? "1" : "");
+  set_or_unset("STIPPLE_MAX_BYTES", options.max_bytes);
   std::vector<std::string> command = options.command;
   if (list == nullptr) command = WithExports(command, variables, preload, IsOpenMpi);
   setenv("LD_PRELOAD", all.c_str(), 1);
@@ -215,6 +238,8 @@ int RunRun(const Arguments& arguments) {
   std::optional<RunOptions> options = ParseRun(arguments);
   if (!options) return 0;
   CheckClock(options->clock);
+  if (!options->max_bytes.empty())
+    options->max_bytes = std::to_string(ParseMaxBytes(options->max_bytes));
   if (!options->filter.empty()) CheckFilter(options->filter);
   if (options->archive.empty()) {
     const std::string& program = options->command[ProgramIndex(options->command)];

@@ -37,6 +37,11 @@ std::span<const std::uint32_t> CallStack::Record(const EventWord* record) {
   return left_;
 }
 
+void CallStack::Begin(const EventWord* open_frames, std::span<const std::uint32_t> regions) {
+  for (const std::uint32_t region : regions) Push(region);
+  points_.Begin(open_frames);
+}
+
 void CallStack::Push(std::uint32_t region) {
   if (region >= open_.size()) open_.resize(region + 1);
   frames_.push_back(region);

@@ -22,6 +22,8 @@ class CallStack {
   /// until the next event. A leave without an enter changes nothing.
   std::span<const std::uint32_t> Function(std::uint32_t region, bool leave);
   std::span<const std::uint32_t> Record(const EventWord* record);
+  /// Begins with the frames in an OpenFrames record, whose regions are `regions`.
+  void Begin(const EventWord* open_frames, std::span<const std::uint32_t> regions);
 
   std::size_t depth() const { return frames_.size(); }
   /// The innermost region; there must be one.

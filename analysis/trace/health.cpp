@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 
 namespace stipple {
 namespace {
@@ -66,7 +67,22 @@ constexpr std::array kDefects = {
     DefectEntry{Defect::kClockUnsynchronised, "clock-unsynchronised",
                 "computer's clock was never compared with the others'",
                 "computers' clocks were never compared with the others'"},
+    DefectEntry{Defect::kClockStep, "clock-step",
+                "step of a thread's clock: times behind it are no better than their chunk's",
+                "steps of threads' clocks: times behind them are no better than their chunks'"},
 };
+
+std::string SecondsText(std::int64_t ns) {
+  char text[48];
+  std::snprintf(text, sizeof text, "%.6f s", static_cast<double>(ns) * 1e-9);
+  return text;
+}
+
+std::string TextOf(const std::optional<ProblemSpan>& when) {
+  if (!when) return "";
+  if (when->from_ns == when->to_ns) return ", at " + SecondsText(when->from_ns);
+  return ", between " + SecondsText(when->from_ns) + " and " + SecondsText(when->to_ns);
+}
 
 }  // namespace
 
@@ -77,26 +93,27 @@ const DefectEntry& EntryOf(Defect defect) {
 std::string TextOf(const Problem& problem) {
   const DefectEntry& entry = EntryOf(problem.defect);
   return (problem.where.empty() ? "" : problem.where + ": ") + std::to_string(problem.count) + " " +
-         std::string(problem.count == 1 ? entry.one : entry.many);
+         std::string(problem.count == 1 ? entry.one : entry.many) + TextOf(problem.when);
 }
 
-void TraceHealth::Add(Defect defect, std::string_view where, std::uint64_t count) {
+void TraceHealth::Add(Defect defect, std::string_view where, std::uint64_t count,
+                      std::optional<ProblemSpan> when) {
   if (count == 0) return;
   for (Problem& p : problems_) {
-    if (p.defect == defect && p.where == where) {
+    if (p.defect == defect && p.where == where && p.when == when) {
       p.count += count;
       return;
     }
   }
-  problems_.push_back({defect, std::string(where), count});
+  problems_.push_back({defect, std::string(where), count, when});
 }
 
 void TraceHealth::Add(const TraceHealth& other) {
-  for (const Problem& p : other.problems_) Add(p.defect, p.where, p.count);
+  for (const Problem& p : other.problems_) Add(p.defect, p.where, p.count, p.when);
 }
 
 void TraceHealth::AddAt(std::string_view where, const TraceHealth& other) {
-  for (const Problem& p : other.problems_) Add(p.defect, where, p.count);
+  for (const Problem& p : other.problems_) Add(p.defect, where, p.count, p.when);
 }
 
 std::uint64_t TraceHealth::CountOf(Defect defect) const {

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,6 +40,7 @@ enum class Defect {
   kIncompleteCollective,
   kClockUnknown,
   kClockUnsynchronised,
+  kClockStep,
 };
 
 /// Name and sentence of a Defect; the sentence follows a count.
@@ -50,20 +52,29 @@ struct DefectEntry {
 };
 const DefectEntry& EntryOf(Defect defect);
 
+/// Two times of the archive.
+struct ProblemSpan {
+  std::int64_t from_ns = 0;
+  std::int64_t to_ns = 0;
+  bool operator==(const ProblemSpan&) const = default;
+};
+
 /// `count` defects of one kind in one place.
 struct Problem {
   Defect defect;
   std::string where;  // stream file, rank or process; empty: the archive
   std::uint64_t count = 1;
+  std::optional<ProblemSpan> when = {};
 };
 
-/// "node7.4711.stream: 3 events were lost"
+/// "node7.4711.stream: 3 events were lost, between 1.250000 s and 1.500000 s"
 std::string TextOf(const Problem& problem);
 
 class TraceHealth {
  public:
   /// Adds to what is known of this defect in this place; a count of 0 changes nothing.
-  void Add(Defect defect, std::string_view where, std::uint64_t count = 1);
+  void Add(Defect defect, std::string_view where, std::uint64_t count = 1,
+           std::optional<ProblemSpan> when = std::nullopt);
   void Add(const TraceHealth& other);
   /// The same, all of them in one place.
   void AddAt(std::string_view where, const TraceHealth& other);

@@ -27,6 +27,8 @@ class JumpPoints {
   /// Where the thread stands after the record, being at `depth` before: nothing if the record is no
   /// jump. Its depth may be more than its context has frames, in a damaged archive.
   std::optional<StackPlace> After(const EventWord* record, std::size_t depth);
+  /// Points that were alive when the rest of a ring began; the record's frames are the stack.
+  void Begin(const EventWord* open_frames);
   /// The context that the thread is in.
   std::uint32_t context() const { return context_; }
 

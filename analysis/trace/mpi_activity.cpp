@@ -2,6 +2,7 @@
 #include "analysis/trace/mpi_activity.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <span>
 #include <string>
@@ -54,6 +55,33 @@ void NumberCollectives(std::vector<CollectiveEvent>& collectives) {
     number = same ? number + 1 : 0;
     collectives[i].number = number;
   }
+}
+
+/// Of a ring the begin is missing, on each rank another part of it: counted from the end.
+void NumberFromEnd(std::vector<CollectiveEvent>& collectives) {
+  std::uint32_t number = std::numeric_limits<std::uint32_t>::max();
+  for (std::size_t i = collectives.size(); i-- > 0;) {
+    const bool same =
+        i + 1 < collectives.size() && collectives[i].communicator == collectives[i + 1].communicator;
+    number = same ? number - 1 : std::numeric_limits<std::uint32_t>::max();
+    collectives[i].number = number;
+  }
+}
+
+/// Drops the first events of each channel whose other end a ring has overwritten: at the end of the
+/// run all messages had been received. Both are in order.
+void DropOverwrittenEnds(std::vector<SendEvent>& sends, std::vector<ReceiveEvent>& receives) {
+  std::map<Channel, std::int64_t> surplus;  // of sends
+  for (const SendEvent& s : sends) ++surplus[s.channel];
+  for (const ReceiveEvent& r : receives) --surplus[r.channel];
+  std::erase_if(sends, [&](const SendEvent& s) {
+    std::int64_t& more = surplus[s.channel];
+    return more > 0 && more-- > 0;
+  });
+  std::erase_if(receives, [&](const ReceiveEvent& r) {
+    std::int64_t& more = surplus[r.channel];
+    return more < 0 && more++ < 0;
+  });
 }
 
 /// Moves `more` behind `all`.
@@ -147,6 +175,7 @@ MpiActivity JoinActivity(const Trace& trace, std::vector<LocationActivity> locat
     LocationActivity& p = processes[i];
     JoinRequests(p);
     NumberCollectives(p.collectives);
+    if (trace.kept()) NumberFromEnd(p.collectives);
     Append(a.sends, p.sends);
     Append(a.receives, p.receives);
     Append(a.collectives, p.collectives);
@@ -163,9 +192,10 @@ MpiActivity JoinActivity(const Trace& trace, std::vector<LocationActivity> locat
   std::ranges::stable_sort(a.collectives, {}, [](const CollectiveEvent& c) {
     return std::tuple(c.communicator, c.number, c.rank);
   });
+  if (trace.kept()) DropOverwrittenEnds(a.sends, a.receives);
   MatchMessages(a.sends, a.receives);
   CountMessages(a);
-  CountCollectives(trace, a);
+  if (!trace.kept()) CountCollectives(trace, a);
   return a;
 }
 

@@ -39,16 +39,44 @@ constexpr std::uint64_t BytesOf(RecordKind kind) {
       return sizeof(RegionMode);
     case RecordKind::kCountedEnter:
       return sizeof(CountedEnter);
+    case RecordKind::kClockStep:
+      return sizeof(ClockStep);
     default:
       return 0;
   }
 }
 
+/// Bytes of a whole OpenFrames record; never those of a record that does not fit.
+std::uint64_t OpenFramesBytes(const EventWord* word, const EventWord* end) {
+  if (static_cast<std::uint64_t>(end - word) * sizeof(EventWord) < sizeof(OpenFrames)) return 1;
+  const auto r = RecordAt<OpenFrames>(word);
+  return sizeof r + std::uint64_t{r.frames} * sizeof(OpenFrame) +
+         std::uint64_t{r.points} * sizeof(OpenPoint);
+}
+
 }  // namespace
+
+std::vector<std::uint32_t> OpenRegions(const EventWord* record, std::uint32_t region_count) {
+  std::vector<std::uint32_t> regions(RecordAt<OpenFrames>(record).frames);
+  const EventWord* frame = record + sizeof(OpenFrames) / sizeof(EventWord);
+  for (std::uint32_t& region : regions) {
+    region = RecordAt<OpenFrame>(frame).region;
+    if (region >= region_count) region = 0;
+    frame += sizeof(OpenFrame) / sizeof(EventWord);
+  }
+  return regions;
+}
+
+bool AllOpenKnown(const EventWord* record) {
+  const auto r = RecordAt<OpenFrames>(record);
+  return r.unknown == 0 && r.frames >= r.depth;
+}
 
 std::uint64_t SoundRecordWords(const EventWord* word, const EventWord* end) {
   const std::uint64_t words = WordsOf(*word);
-  const std::uint64_t expected = BytesOf(KindOf(*word));
+  const std::uint64_t expected = KindOf(*word) == RecordKind::kOpenFrames && IsClosed(*word)
+                                     ? OpenFramesBytes(word, end)
+                                     : BytesOf(KindOf(*word));
   if (words == 0) return 0;
   if (expected != 0 && words * sizeof(EventWord) != expected) return 0;
   return words <= static_cast<std::uint64_t>(end - word) ? words : 0;
@@ -71,7 +99,10 @@ RecordStep StepRecord(const EventWord* word, const Chunk& chunk, std::uint64_t n
     ++counts.bad_records;
     return {words, false, now};
   }
+  if (KindOf(*word) == RecordKind::kOpenFrames) return {words, true, std::max(now, chunk.ticks)};
   ++counts.records;
+  if (KindOf(*word) == RecordKind::kClockStep && counts.clock_steps++ == 0)
+    counts.first_step_ticks = now;
   return {words, true, has_time ? std::max(now, std::min(word[1], limit)) : now};
 }
 

@@ -18,6 +18,7 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <vector>
 
 #include "analysis/trace/stream.h"
 #include "stipple/format.h"
@@ -32,6 +33,8 @@ struct ScanCounts {
   std::uint64_t open_records = 0;
   std::uint64_t bad_records = 0;
   std::uint64_t undefined_regions = 0;
+  std::uint64_t clock_steps = 0;
+  std::uint64_t first_step_ticks = 0;  // when the first of them was seen
 
   std::uint64_t Events() const { return function_events + records; }
   ScanCounts& operator+=(const ScanCounts& o) {
@@ -41,6 +44,8 @@ struct ScanCounts {
     open_records += o.open_records;
     bad_records += o.bad_records;
     undefined_regions += o.undefined_regions;
+    if (clock_steps == 0) first_step_ticks = o.first_step_ticks;
+    clock_steps += o.clock_steps;
     return *this;
   }
 };
@@ -53,6 +58,20 @@ struct ScanPosition {
   std::uint64_t step = 0;           // between unclocked events
   std::uint64_t unclocked = 0;      // events left that take a step
 };
+
+/// A copy of the record at `word`, which SoundRecordWords has accepted.
+template <class Record>
+Record RecordAt(const EventWord* word) {
+  Record record;
+  std::memcpy(&record, word, sizeof(Record));
+  return record;
+}
+
+/// Regions of the frames in an OpenFrames record that has been accepted, outermost first; those that
+/// are not below region_count as 0.
+std::vector<std::uint32_t> OpenRegions(const EventWord* record, std::uint32_t region_count);
+/// Whether that is all that was open.
+bool AllOpenKnown(const EventWord* record);
 
 /// Words of the record at `word` when it lies wholly in [word, end) and is as long as its kind
 /// says; else 0.
@@ -118,7 +137,7 @@ bool ScanSome(const ThreadStream& thread, std::uint32_t region_count, std::uint6
   if (at.chunk >= thread.chunks.size()) return false;
   const Chunk& chunk = thread.chunks[at.chunk];
   const std::uint64_t limit =
-      at.chunk + 1 < thread.chunks.size() ? thread.chunks[at.chunk + 1].ticks : kNoTickLimit;
+      at.chunk + 1 < thread.chunks.size() ? thread.chunks[at.chunk + 1].ticks : thread.end_limit;
   const EventWord* const end = WrittenEnd(chunk);
   const EventWord* w = at.word == nullptr ? chunk.begin : at.word;
   const EventWord* const stop = w + std::min(static_cast<std::uint64_t>(end - w), budget);
@@ -133,7 +152,8 @@ bool ScanSome(const ThreadStream& thread, std::uint32_t region_count, std::uint6
     if (region >= kKindBase) [[unlikely]] {
       const RecordStep record = StepRecord(w, chunk, now, limit, counts);
       if (record.words == 0) w = end;
-      if (record.sound) {
+      // Of a ring only the first chunk's open frames say something new.
+      if (record.sound && (KindOf(word) != RecordKind::kOpenFrames || at.chunk == 0)) {
         now = record.now;
         hot.Record(w, now);
       }
@@ -183,14 +203,6 @@ ScanCounts ScanThread(const ThreadStream& thread, std::uint32_t region_count, Vi
     chunk_done(chunk.Bytes());
   }
   return counts;
-}
-
-/// A copy of the record at `word`, which SoundRecordWords has accepted.
-template <class Record>
-Record RecordAt(const EventWord* word) {
-  Record record;
-  std::memcpy(&record, word, sizeof(Record));
-  return record;
 }
 
 }  // namespace stipple

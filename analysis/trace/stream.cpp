@@ -16,6 +16,8 @@
 #include <map>
 #include <mutex>
 
+#include "analysis/trace/gaps.h"
+
 namespace stipple {
 namespace {
 
@@ -119,6 +121,7 @@ struct DefinitionReader {
     Loss d;
     if (!Get(words, d)) return false;
     stream.lost = std::max(stream.lost, d.events);
+    if (d.from_ticks < kMostTicks) stream.loss_records.push_back(d);
     return true;
   }
 
@@ -199,6 +202,13 @@ struct DefinitionReader {
     return true;
   }
 
+  bool Ring(std::span<const EventWord> words) {
+    Overwritten d;
+    if (!Get(words, d) || d.from_ticks >= kMostTicks) return false;
+    stream.overwritten.push_back(d);
+    return true;
+  }
+
   bool Host(std::span<const EventWord>) { return stream.is_host = true; }
 
   bool Read(std::span<const EventWord> words) {
@@ -235,6 +245,8 @@ struct DefinitionReader {
         return Switch(words);
       case RecordKind::kFiltered:
         return Filter(words);
+      case RecordKind::kOverwritten:
+        return Ring(words);
       default:
         return true;  // of a newer writer, which says so if it matters
     }
@@ -339,10 +351,10 @@ FoundChunks FindChunks(Stream& stream) {
   return found;
 }
 
-/// Sequence numbers are 0, 1, ...: what is not there was lost. Of what is there twice the first
+/// Sequence numbers are `expected` and on: what is not there was lost. Of what is there twice the first
 /// counts: the second is the copy of a window whose process was killed before it lost its magic.
 /// Two different chunks of one number are damage.
-void OrderChunks(std::vector<Chunk>& chunks, Stream& stream) {
+void OrderChunks(std::vector<Chunk>& chunks, std::uint64_t expected, Stream& stream) {
   std::ranges::stable_sort(chunks, {}, &Chunk::sequence);
   std::vector<Chunk> once;
   for (const Chunk& c : chunks) {
@@ -352,7 +364,6 @@ void OrderChunks(std::vector<Chunk>& chunks, Stream& stream) {
       stream.health.Add(Defect::kBadChunk, stream.file_name);
   }
   chunks = std::move(once);
-  std::uint64_t expected = 0;
   for (const Chunk& c : chunks) {
     const std::uint64_t missing = c.sequence - expected;
     // A damaged number is one chunk out of place, not millions that are missing.
@@ -474,17 +485,16 @@ std::unique_ptr<Stream> ReadStream(const std::string& path, TraceHealth& health)
   stream->file_name = file_name;
   if (!ReadHeader(*stream, health)) return nullptr;
   FoundChunks found = FindChunks(*stream);
-  std::uint64_t lost = 0;  // as the chunks tell it, when the process could not say so itself
-  for (auto& [number, thread] : found.threads) {
-    OrderChunks(thread.chunks, *stream);
-    MendTimes(thread.chunks, *stream);
-    lost += thread.chunks.back().lost < (std::uint64_t{1} << 48) ? thread.chunks.back().lost : 0;
-    stream->threads.push_back(std::move(thread));
-  }
-  OrderChunks(found.definitions, *stream);
+  for (auto& [number, thread] : found.threads) stream->threads.push_back(std::move(thread));
+  OrderChunks(found.definitions, 0, *stream);
   for (const Chunk& chunk : found.definitions) ReadDefinitions(chunk, *stream);
-  stream->lost = std::max(stream->lost, lost);
-  stream->health.Add(Defect::kLostEvents, file_name, stream->lost);
+  for (ThreadStream& thread : stream->threads) {
+    OrderChunks(thread.chunks, DropOverwritten(thread, *stream), *stream);
+    MendSteps(thread, *stream);
+    MendTimes(thread.chunks, *stream);
+  }
+  std::erase_if(stream->threads, [](const ThreadStream& t) { return t.chunks.empty(); });
+  PlaceLosses(*stream);
   if (!stream->end)
     stream->health.Add(IsRunning(*stream) ? Defect::kStillRunning : Defect::kUnclosedProcess,
                        file_name);

@@ -58,6 +58,7 @@ struct ThreadStream {
   std::uint32_t tid = 0;
   std::string name;
   std::vector<Chunk> chunks;
+  std::uint64_t end_limit = kMostTicks;  // no event of the last chunk is later
 
   std::uint64_t Bytes() const {
     std::uint64_t bytes = 0;
@@ -109,6 +110,13 @@ struct AvailabilityDefinition {
   std::int32_t error = 0;
 };
 
+/// Events that were lost between two times of their process.
+struct LostSpan {
+  std::uint64_t from_ticks = 0;
+  std::uint64_t to_ticks = 0;
+  std::uint64_t events = 0;
+};
+
 /// Ticks and CLOCK_MONOTONIC_RAW that were read together.
 struct ClockPair {
   std::uint64_t ticks = 0;
@@ -140,6 +148,9 @@ struct Stream {
   std::optional<ProcessEnd> end;
   bool is_host = false;
   std::uint64_t lost = 0;  // events that the process could not record
+  std::vector<Loss> loss_records;
+  std::vector<LostSpan> losses;          // all of `lost`
+  std::vector<Overwritten> overwritten;  // by a ring, of each thread
   std::vector<ClockPair> clock_pairs;
 
   TraceHealth health;

@@ -166,14 +166,56 @@ void Trace::PlaceLocations() {
   std::ranges::stable_sort(
       locations_, {}, [](const Location& l) { return std::tuple(l.rank, l.process, l.thread); });
   zero_ns_ = locations_.empty() ? 0 : zero_ns;
+  FindKeptPart(zero_ns_);
   for (std::size_t i = 0; i < locations_.size(); ++i) {
     Location& l = locations_[i];
     l.index = i;
+    if (kept_) {
+      l.first_ticks = std::max(l.first_ticks, TicksAt(l, 0));
+      l.last_ticks = std::max(l.last_ticks, l.first_ticks);
+    }
     l.begin_ns = TimeNs(l, l.first_ticks);
     l.end_ns = std::max(l.begin_ns, TimeNs(l, l.last_ticks));
     span_ns_ = std::max(span_ns_, l.end_ns);
   }
   counts_.resize(locations_.size());
+}
+
+/// The time from which on all threads are complete, if a ring dropped something, becomes time 0.
+void Trace::FindKeptPart(double first_ns) {
+  KeptPart kept;
+  double from_ns = first_ns;
+  double begin_ns = first_ns;
+  for (std::size_t p = 0; p < processes_.size(); ++p) {
+    const Stream& stream = *processes_[p].stream;
+    begin_ns = std::min(begin_ns, clocks_.maps[p].Ns(stream.header.start_ticks));
+    for (const Overwritten& o : stream.overwritten) {
+      if (o.chunks == 0) continue;
+      kept_ = kept;
+      kept.overwritten_events += o.events;
+      kept.overwritten_bytes += o.bytes;
+      const auto t = std::ranges::find(stream.threads, o.thread, &ThreadStream::thread);
+      const std::uint64_t from = t == stream.threads.end() ? o.from_ticks : t->chunks.front().ticks;
+      from_ns = std::max(from_ns, clocks_.maps[p].Ns(from));
+    }
+  }
+  if (!kept_) return;
+  kept.from_s = (from_ns - begin_ns) * 1e-9;
+  kept_ = kept;
+  zero_ns_ = from_ns;
+}
+
+/// Losses with their place in time.
+void Trace::AddLosses() {
+  for (std::size_t p = 0; p < processes_.size(); ++p) {
+    const Process& process = processes_[p];
+    const auto time_ns = [&](std::uint64_t ticks) {
+      return Rounded(clocks_.maps[p].Ns(ticks) - zero_ns_);
+    };
+    for (const LostSpan& loss : process.stream->losses)
+      health_.Add(Defect::kLostEvents, process.where, loss.events,
+                  ProblemSpan{time_ns(loss.from_ticks), time_ns(loss.to_ticks)});
+  }
 }
 
 void Trace::ReadStreams(const std::vector<std::string>& files) {
@@ -196,6 +238,7 @@ void Trace::ReadStreams(const std::vector<std::string>& files) {
     // Of a process of which nothing is left only the loss is known: it is no further rank.
     if (stream->threads.empty() && !stream->world && stream->switches.empty()) {
       health_.Add(stream->health);
+      health_.Add(Defect::kLostEvents, stream->file_name, stream->lost);
     } else {
       streams_.push_back(std::move(stream));
     }
@@ -223,6 +266,7 @@ Trace Trace::Open(const std::string& path, ReadMeter* meter) {
   NameCode(trace.streams_, trace.health_);
   trace.UnifyDefinitions();
   trace.PlaceLocations();
+  trace.AddLosses();
   std::vector<bool> seen;
   for (const Process& p : trace.processes_) {
     const int world = p.in_world ? FirstRankOf(p) + p.stream->world->world_size : 0;
@@ -316,6 +360,8 @@ TraceHealth Trace::Health() const {
     health.Add(Defect::kOpenRecord, where, counts.open_records);
     health.Add(Defect::kBadRecord, where, counts.bad_records);
     health.Add(Defect::kUndefinedRegion, where, counts.undefined_regions);
+    const std::int64_t step_ns = TimeNs(l, counts.first_step_ticks);
+    health.Add(Defect::kClockStep, where, counts.clock_steps, ProblemSpan{step_ns, step_ns});
   }
   return health;
 }

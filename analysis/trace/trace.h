@@ -84,6 +84,13 @@ struct Location {
   bool IsMain() const { return process == 0 && thread == 0; }
 };
 
+/// What a ring (--max-bytes) left of the run.
+struct KeptPart {
+  double from_s = 0;  // after the run began; the archive's time 0
+  std::uint64_t overwritten_events = 0;
+  std::uint64_t overwritten_bytes = 0;
+};
+
 class Trace {
  public:
   /// Throws InputError when `path` is no directory. Damage is no error: see Health. The meter, if
@@ -119,6 +126,9 @@ class Trace {
   /// Nanoseconds per tick.
   double NsPerTick(const Location& l) const { return Map(l).MeanSlope(); }
   std::int64_t SpanNs() const { return span_ns_; }
+  /// Set if a ring dropped anything: then time 0 is when the last thread's events begin to be all
+  /// there. Earlier ones have negative times; no statistic counts them.
+  const std::optional<KeptPart>& kept() const { return kept_; }
 
   /// Calls the visitor for each event of a location; see ScanSome. Different locations may be
   /// scanned at the same time.
@@ -153,6 +163,8 @@ class Trace {
   void ReadStreams(const std::vector<std::string>& files);
   void UnifyDefinitions();
   void PlaceLocations();
+  void FindKeptPart(double first_ns);
+  void AddLosses();
 
   std::string path_;
   std::vector<std::unique_ptr<Stream>> streams_;
@@ -163,6 +175,7 @@ class Trace {
   std::vector<Communicator> communicators_;
   Clocks clocks_;
   double zero_ns_ = 0;
+  std::optional<KeptPart> kept_;
   std::int64_t span_ns_ = 0;
   int rank_count_ = 0;
   TraceHealth health_;

@@ -25,6 +25,9 @@
 #include <emmintrin.h>
 #include <sys/mman.h>
 
+#include "runtime/core/clock_step.h"
+#include "runtime/core/ring.h"
+
 namespace stipple {
 namespace {
 
@@ -133,13 +136,38 @@ bool TakeFreshChunk(Process& process, Thread& thread, std::size_t bytes) {
   return true;
 }
 
+/// Takes a chunk of whichever kind; false if recording has stopped, or the ring has none now.
+// NOLINTNEXTLINE(readability-function-size): who, how much, when.
+bool TakeAnyChunk(Process& process, Thread& thread, std::size_t bytes, std::uint64_t ticks) {
+  if (HasRing(process.ring))
+    return FitsRing(process.ring, bytes) && TakeRingChunk(process, thread, ticks);
+  return thread.chunk != nullptr && CanReuse(thread, bytes) ? MoveWindowOn(process, thread)
+                                                            : TakeFreshChunk(process, thread, bytes);
+}
+
+ClockPair PairOf(const char* chunk) {
+  const auto* header = reinterpret_cast<const ChunkHeader*>(chunk);
+  return {header->ticks, header->raw_ns};
+}
+
+/// Begins the chunk with what became of the clock since `before`; returns the bytes.
+std::uint64_t WriteClockStep(char* place, const ClockPair& before, const ClockPair& now) {
+  constexpr std::uint64_t kWords = sizeof(ClockStep) / sizeof(EventWord);
+  auto* record = reinterpret_cast<ClockStep*>(place);
+  *record = {0, now.ticks, now.raw_ns, before.ticks, before.raw_ns};
+  std::atomic_ref<EventWord>(record->header)
+      .store(MakeHeader(ClockStep::kKind, kWords, true), std::memory_order_release);
+  return sizeof *record;
+}
+
 }  // namespace
 
 bool NextChunk(Process& process, Thread& thread, std::size_t bytes, std::uint64_t ticks) {
-  const bool taken = thread.chunk != nullptr && CanReuse(thread, bytes)
-                         ? MoveWindowOn(process, thread)
-                         : TakeFreshChunk(process, thread, bytes);
-  if (!taken) return false;
+  const bool has_before = thread.chunk != nullptr;
+  const ClockPair before = has_before ? PairOf(thread.chunk) : ClockPair{};
+  if (!TakeAnyChunk(process, thread, bytes, ticks)) return false;
+  std::uint64_t used = sizeof(ChunkHeader);
+  if (HasRing(process.ring)) used += WriteOpenFrames(thread, thread.chunk + used, ticks);
   ChunkHeader header{};
   header.bytes = static_cast<std::uint32_t>(thread.chunk_bytes);
   header.kind = ChunkKind::kEvents;
@@ -149,10 +177,14 @@ bool NextChunk(Process& process, Thread& thread, std::size_t bytes, std::uint64_
   header.ticks = ticks;
   header.lost = thread.lost;
   WriteChunkHeader(process, thread.chunk, header);
-  const auto begin = reinterpret_cast<std::uint64_t>(thread.chunk);
+  const ClockPair begin{process.begin_ticks, process.begin_raw_ns};
+  const ClockPair now = PairOf(thread.chunk);
+  if (has_before && ClockStepped(begin, before, now))
+    used += WriteClockStep(thread.chunk + used, before, now);
   thread.waste = 0;
-  thread.control.cur = begin + sizeof(ChunkHeader);
-  thread.chunk_end = thread.control.end = begin + thread.chunk_bytes;
+  thread.control.cur = reinterpret_cast<std::uint64_t>(thread.chunk) + used;
+  thread.chunk_end = thread.control.end =
+      reinterpret_cast<std::uint64_t>(thread.chunk) + thread.chunk_bytes;
   return true;
 }
 

@@ -95,6 +95,7 @@ int Grow(StreamFile& file, std::uint64_t bytes) {
   if (descriptor < 0) return -descriptor;
   const std::uint64_t least = file.used + bytes;
   std::uint64_t end = file.closing ? least : file.allocated + file.next_extent_bytes;
+  if (file.ahead_limit != 0 && end > file.ahead_limit) end = file.ahead_limit;
   if (end < least) end = least;
   int error = Allocate(descriptor, file.allocated, end);
   if (error != 0 && end != least) error = Allocate(descriptor, file.allocated, end = least);

@@ -23,7 +23,8 @@ struct StreamFile {
   std::uint64_t window_begin;
   std::uint64_t window_end;
   std::uint64_t next_extent_bytes;
-  bool closing;  // no more extents ahead of need
+  std::uint64_t ahead_limit;  // no extents ahead of need beyond this; 0: none
+  bool closing;               // no more extents ahead of need
   Line<kPathBytes> path;
 };
 

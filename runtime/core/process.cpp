@@ -180,6 +180,7 @@ int BeginFile(Process& process, const char* archive) {
   }
   WriteFileHeader(header, process, realtime_ns, start, system);
   process.header = reinterpret_cast<FileHeader*>(header);
+  if (ReadSettings().max_bytes != 0) BeginRing(process, ReadSettings().max_bytes);
   return 0;
 }
 

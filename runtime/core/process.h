@@ -8,6 +8,7 @@
 
 #include "runtime/core/file.h"
 #include "runtime/core/lock.h"
+#include "runtime/core/ring.h"
 #include "stipple/format.h"
 
 namespace stipple {
@@ -56,6 +57,7 @@ struct Process {
   StreamFile file;
   FileHeader* header;  // in the file, mapped
   DefinitionChunk definitions;
+  Ring ring;
   Thread* threads;  // all that ever recorded, newest first
   Thread* spare;    // never used
   std::uint32_t spare_count;

@@ -77,6 +77,16 @@ void ReadClockSetting() {
   CopyBytes(settings.text, text.text(), text.length());
 }
 
+/// `stipple run` has turned 64M into a number and refused what is too small.
+void ReadMaxBytes() {
+  const char* digit = getenv("STIPPLE_MAX_BYTES");
+  if (digit == nullptr) return;
+  std::uint64_t bytes = 0;
+  for (; *digit >= '0' && *digit <= '9' && bytes < (std::uint64_t{1} << 56); ++digit)
+    bytes = bytes * 10 + static_cast<std::uint64_t>(*digit - '0');
+  if (*digit == '\0') settings.max_bytes = bytes;
+}
+
 }  // namespace
 
 const Settings& ReadSettings() {
@@ -85,6 +95,7 @@ const Settings& ReadSettings() {
   if (settings.archive != nullptr) {
     ReadClockSetting();
     settings.filter = CopyOfVariable("STIPPLE_FILTER");
+    ReadMaxBytes();
     const char* paused = getenv("STIPPLE_PAUSED");
     settings.paused = paused != nullptr && *paused != '\0';
   }

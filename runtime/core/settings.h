@@ -13,10 +13,11 @@ struct Settings {
   double budget;             // share of the time that recording may take; 0: no limit
   const char* filter;        // absolute path of a filter file; null: none
   bool paused;               // begin switched off
+  std::uint64_t max_bytes;   // of events that a process keeps: a ring; 0: all
   char text[256];            // for the file header, "clock=exact"
 };
 
-/// Reads STIPPLE_ARCHIVE, STIPPLE_CLOCK, STIPPLE_FILTER and STIPPLE_PAUSED once; an unknown clock
+/// Reads STIPPLE_ARCHIVE, STIPPLE_CLOCK, STIPPLE_FILTER, STIPPLE_PAUSED and STIPPLE_MAX_BYTES once; an unknown clock
 /// is named on stderr and exact is used.
 const Settings& ReadSettings();
 

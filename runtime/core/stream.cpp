@@ -241,6 +241,7 @@ void EndThread(void* pointer) {
   Holding holding(process->lock);
   EndCounts(*process, *thread);
   thread->ended = 1;
+  if (HasRing(process->ring)) return EndRingThread(*process, *thread, record.ticks);
   if (thread->chunk != nullptr)
     Syscall(SYS_madvise, Argument(thread->chunk), static_cast<long>(thread->chunk_bytes),
             MADV_DONTNEED);

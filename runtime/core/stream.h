@@ -27,6 +27,8 @@ struct Thread {
   std::uint64_t step_begin;  // ticks when the last kStepEvents began
   std::uint64_t last_ticks;  // of the last event
   std::uint32_t steps;
+  std::uint32_t place;  // ring.h: of the chunk, counted from 1
+  RingThread* ring;     // null: none needed
   Thread* next;
   // budget.h
   std::uint64_t review_ticks;   // of the last review

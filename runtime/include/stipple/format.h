@@ -286,6 +286,47 @@ struct TimeStamp {
 };
 static_assert(sizeof(TimeStamp) == 24);
 
+/// The thread's clock was set back, or ran at another rate for a while: between the begins of two
+/// chunks of the thread. `ticks` is below `before_ticks`, or their difference does not fit that of
+/// CLOCK_MONOTONIC_RAW.
+struct ClockStep {
+  static constexpr RecordKind kKind = RecordKind::kClockStep;
+  EventWord header;
+  std::uint64_t ticks;  // of this chunk's begin
+  std::uint64_t raw_ns;
+  std::uint64_t before_ticks;  // of the begin of the thread's chunk before
+  std::uint64_t before_raw_ns;
+};
+static_assert(sizeof(ClockStep) == 40);
+
+/// A visit that was open when a chunk of a ring began.
+struct OpenFrame {
+  std::uint64_t ticks;  // when it was entered; 0: the clock was not read
+  std::uint32_t region;
+  std::uint32_t reserved;
+};
+static_assert(sizeof(OpenFrame) == 16);
+
+/// A jump point that was alive then.
+struct OpenPoint {
+  std::uint64_t stack;  // JumpPoint
+  std::uint64_t depth;  // frames that were open there
+};
+static_assert(sizeof(OpenPoint) == 16);
+
+/// Where a thread stood when this chunk of a ring (--max-bytes) began: first record of each chunk
+/// but the thread's first. `frames` OpenFrames follow, outermost first, then `points` OpenPoints.
+struct OpenFrames {
+  static constexpr RecordKind kKind = RecordKind::kOpenFrames;
+  EventWord header;
+  std::uint64_t ticks;
+  std::uint32_t depth;   // frames that were open; if more than `frames`, the innermost ones follow
+  std::uint32_t frames;
+  std::uint32_t points;
+  std::uint32_t unknown;  // 1: the thread has switched stacks, its frames are not known
+};
+static_assert(sizeof(OpenFrames) == 32);
+
 // Jumps. A thread's jump points are told apart by the stack pointer that they go back to: of two
 // with the same one only the later is alive.
 
@@ -536,6 +577,21 @@ struct Calibration {
   std::uint32_t reserved;
 };
 static_assert(sizeof(Calibration) == 40);
+
+/// A ring (--max-bytes) dropped the first chunks of a thread. One record for a thread, rewritten in
+/// place with each chunk, `chunks` last: a chunk whose sequence is lower is gone, whatever is left
+/// of it.
+struct Overwritten {
+  static constexpr RecordKind kKind = RecordKind::kOverwritten;
+  EventWord header;
+  std::uint32_t thread;
+  std::uint32_t reserved;
+  std::uint64_t chunks;
+  std::uint64_t events;      // in them
+  std::uint64_t bytes;       // of them
+  std::uint64_t from_ticks;  // the thread's events from here on are there
+};
+static_assert(sizeof(Overwritten) == 48);
 
 /// What the filter did to the functions of one object; the filter's path follows. Records add up.
 struct Filtered {
