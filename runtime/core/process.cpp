@@ -11,6 +11,7 @@
 #include <sys/utsname.h>
 
 #include "runtime/core/clock.h"
+#include "runtime/core/observer.h"
 #include "runtime/core/recorder.h"
 #include "runtime/core/region.h"
 #include "runtime/core/settings.h"
@@ -265,6 +266,8 @@ void NoteEnd(Ending how, int status) {
   const SignalBlock signals_blocked;
   // A child of vfork runs in its parent's memory: it is not the parent that ends.
   if (process->pid != GetPid()) return;
+  if (process->state.load(std::memory_order_acquire) == State::kRecording)
+    Tell(&stipple_observer::process_ends);
   Holding holding(process->lock);
   if (how != Ending::kExec) WriteVisitCounts(*process);
   if (ProcessEnd* place = process->definitions.process_end) {
