@@ -15,16 +15,18 @@
 
 namespace stipple {
 
-/// Keeps every signal, libc's own included, away from this thread.
+/// Keeps every signal, libc's own included, away from this thread. SIGSYS is left as it is: the
+/// kernel kills a process that has it blocked when Syscall User Dispatch raises it.
 class SignalBlock {
  public:
-  SignalBlock() { Change(kSetMask, ~std::uint64_t{0}, &before_); }
+  SignalBlock() { Change(kBlock, ~(std::uint64_t{1} << (kSigSys - 1)), &before_); }
   ~SignalBlock() { Change(kSetMask, before_, nullptr); }
   SignalBlock(const SignalBlock&) = delete;
   SignalBlock& operator=(const SignalBlock&) = delete;
 
  private:
-  static constexpr long kSetMask = 2;
+  static constexpr long kBlock = 0, kSetMask = 2;
+  static constexpr int kSigSys = 31;
   static void Change(long how, std::uint64_t mask, std::uint64_t* before) {
     Syscall(SYS_rt_sigprocmask, how, Argument(&mask), Argument(before), sizeof mask);
   }

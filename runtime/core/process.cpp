@@ -11,6 +11,7 @@
 #include <sys/utsname.h>
 
 #include "runtime/core/clock.h"
+#include "runtime/core/observer.h"
 #include "runtime/core/recorder.h"
 #include "runtime/core/region.h"
 #include "runtime/core/sample.h"
@@ -267,6 +268,8 @@ void NoteEnd(Ending how, int status) {
   const SignalBlock signals_blocked;
   // A child of vfork runs in its parent's memory: it is not the parent that ends.
   if (process->pid != GetPid()) return;
+  if (process->state.load(std::memory_order_acquire) == State::kRecording)
+    Tell(&stipple_observer::process_ends);
   Holding holding(process->lock);
   WriteVisitCounts(*process);
   if (ProcessEnd* place = process->definitions.process_end) {

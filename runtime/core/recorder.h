@@ -10,6 +10,16 @@
 
 struct stipple_name;  // user.h
 
+/// What a library that records beside the events wants to be told; null: nothing. Called in the
+/// thread that it is about, with signals blocked and no lock held. Events of such a call are lost.
+struct stipple_observer {
+  void (*thread_began)(uint32_t thread, uint32_t tid);  // it has got its stream
+  void (*chunk_taken)(void);                            // of events
+  void (*thread_ends)(void);
+  void (*process_ends)(void);  // in order, or by exec: that may still fail
+  void (*call_left)(void);     // stipple_leave; signals are not blocked
+};
+
 #pragma GCC visibility push(default)
 extern "C" {
 
@@ -41,6 +51,24 @@ void stipple_append(const void* record, uint8_t kind, size_t bytes);
 /// by the core.
 void stipple_define(const void* record, uint8_t kind, size_t bytes, const void* text,
                     size_t text_bytes);
+
+/// A place for an extended record of `bytes` in this thread's stream, which the caller writes: open
+/// header, payload, closed header. Null: not recorded. Nothing but stores may come in between.
+uint64_t* stipple_reserve(size_t bytes);
+
+/// Id of a name and its unit for Counter, Mark and SystemCall; 0 when nothing is recorded.
+uint32_t stipple_define_name(const char* name, const char* unit);
+
+/// Takes a chunk of `kind` (ChunkKind) of `bytes` (a multiple of 16384) for the caller to fill behind
+/// its header: mapped, zero, its header written. Null: recording has stopped.
+char* stipple_take_chunk(uint32_t kind, uint32_t thread, uint32_t tid, uint64_t sequence,
+                         uint64_t lost, size_t bytes);
+
+/// Gives this thread a stream of its own if it has none and the process records.
+void stipple_begin_thread(void);
+
+/// From now on `observer`, which must stay, is told. A few can be: false if there are too many.
+bool stipple_observe(const struct stipple_observer* observer);
 
 // user.h
 void stipple_record_mark(struct stipple_name* name);

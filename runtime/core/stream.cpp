@@ -15,6 +15,7 @@
 #include "runtime/core/calibration.h"
 #include "runtime/core/chunk.h"
 #include "runtime/core/clock.h"
+#include "runtime/core/observer.h"
 #include "runtime/core/process_end.h"
 #include "runtime/core/recorder.h"
 #include "runtime/core/region.h"
@@ -118,6 +119,7 @@ Thread* NewThread() {
   BeginReviews(*thread);
   stipple_stream = &thread->control;
   if (have_end_key) pthread_setspecific(end_key, thread);
+  Tell(&stipple_observer::thread_began, thread->index, thread->tid);
   return thread;
 }
 
@@ -142,6 +144,7 @@ bool TakeNextChunk(Process& process, Thread& thread, std::uint64_t bytes, std::u
   if (!NextChunk(process, thread, bytes, ticks)) return false;
   thread.review_from = thread.control.cur;
   WriteSteps(process, thread);
+  Tell(&stipple_observer::chunk_taken);
   if (slow) BeginStepping(thread, ticks);
   return true;
 }
@@ -238,6 +241,7 @@ void EndThread(void* pointer) {
   Process* process = ThisProcess();
   ForgetSkipped();
   if (thread->tid == 0 || process == nullptr) return;
+  Tell(&stipple_observer::thread_ends);
   Holding holding(process->lock);
   EndCounts(*process, *thread);
   thread->ended = 1;
@@ -339,7 +343,15 @@ std::uint32_t stipple_slow_event(std::uint32_t token, std::uint64_t stack) {
 uint64_t stipple_ticks() { return stipple::ReadTicks(); }
 
 uint64_t stipple_enter(uint32_t region) { return stipple::AppendEvent(region, false); }
-uint64_t stipple_leave(uint32_t region) { return stipple::AppendEvent(region, true); }
+uint64_t stipple_leave(uint32_t region) {
+  const std::uint64_t ticks = stipple::AppendEvent(region, true);
+  stipple::Tell(&stipple_observer::call_left);
+  return ticks;
+}
+
+uint64_t* stipple_reserve(size_t bytes) {
+  return stipple::IsSwitchedOn() ? stipple::ReserveRecord(bytes) : nullptr;
+}
 
 void stipple_append(const void* record, uint8_t kind, size_t bytes) {
   if (!stipple::IsSwitchedOn()) return;

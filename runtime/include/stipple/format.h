@@ -59,6 +59,8 @@ static_assert(sizeof(FileHeader) == 688);
 enum class ChunkKind : std::uint32_t {
   kEvents = 1,       // of one thread, in the order of the slots
   kDefinitions = 2,  // of the process: definitions, clock readings, losses, the end; never recycled
+  kKernel = 3,  // of one thread, what the kernel tells of it: ContextSwitch, Counter; their times are
+                // nanoseconds of CLOCK_MONOTONIC_RAW
 };
 
 /// First bytes of a chunk.
@@ -397,6 +399,41 @@ struct CountedEnter {
   std::uint64_t visits;  // of the region by this thread, without any event, since its last sample
 };
 static_assert(sizeof(CountedEnter) == 32);
+
+enum class SwitchReason : std::uint32_t {
+  kBlocked = 1,    // it waited for something
+  kPreempted = 2,  // it could have gone on: another was given the processor, or it yielded
+};
+
+/// The thread was off its processor. Only in chunks of kind kKernel, in the order of `in_ns`. A run
+/// of short absences (each under 10 us, preempted) is one record.
+struct ContextSwitch {
+  static constexpr RecordKind kKind = RecordKind::kContextSwitch;
+  EventWord header;
+  std::uint64_t out_ns;   // CLOCK_MONOTONIC_RAW: it left its processor
+  std::uint64_t in_ns;    // it was back; 0: it was not when the process ended
+  std::uint64_t away_ns;  // in_ns - out_ns, for a run only the absences
+  std::uint32_t out_cpu;
+  std::uint32_t in_cpu;  // another one: it migrated
+  SwitchReason reason;
+  std::uint32_t count;     // absences in this record
+  std::uint32_t next_tid;  // the thread that took the processor over; 0: not known
+  std::uint32_t reserved;
+};
+static_assert(sizeof(ContextSwitch) == 56);
+
+/// A system call has returned, `ticks`: when. Up to six words of parameters follow, as many as the
+/// record's length says. A call that was left by a jump or by the thread's cancellation has none.
+struct SystemCall {
+  static constexpr RecordKind kKind = RecordKind::kSystemCall;
+  EventWord header;
+  std::uint64_t ticks;
+  std::uint64_t enter_ticks;
+  std::int64_t result;   // as the kernel gives it: an error is -errno
+  std::uint32_t number;  // of the kernel, x86-64
+  std::uint32_t name;    // DefineName of the libc function if that is called otherwise (sleep); else 0
+};
+static_assert(sizeof(SystemCall) == 40);
 
 // Definitions. Text follows the struct: its parts without terminators, one after the other,
 // zero-padded to 8 bytes.
