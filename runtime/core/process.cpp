@@ -11,6 +11,7 @@
 #include <sys/utsname.h>
 
 #include "runtime/core/clock.h"
+#include "runtime/core/hooks.h"
 #include "runtime/core/recorder.h"
 #include "runtime/core/region.h"
 #include "runtime/core/settings.h"
@@ -184,6 +185,8 @@ int BeginFile(Process& process, const char* archive) {
 
 }  // namespace
 
+constinit Hooks hooks{};
+
 Process* ThisProcess() {
   Process* process = this_process.load(std::memory_order_acquire);
   if (process != nullptr) return process;
@@ -228,6 +231,7 @@ Process* BeginProcess() {
     DefineCommandLine(*process);
     DefineAll(*process);
     DefineSwitches(*process);
+    if (hooks.process_begun != nullptr) hooks.process_begun(*process);
     if (process->state.load(std::memory_order_relaxed) == State::kNew)
       process->state.store(State::kRecording, std::memory_order_release);
   }
@@ -265,6 +269,7 @@ void NoteEnd(Ending how, int status) {
   const SignalBlock signals_blocked;
   // A child of vfork runs in its parent's memory: it is not the parent that ends.
   if (process->pid != GetPid()) return;
+  if (hooks.process_ending != nullptr) hooks.process_ending(*process);
   Holding holding(process->lock);
   if (how != Ending::kExec) WriteVisitCounts(*process);
   if (ProcessEnd* place = process->definitions.process_end) {
@@ -298,8 +303,12 @@ void RetractEnd() {
 extern "C" {
 
 bool stipple_begin() {
-  const stipple::SignalBlock signals_blocked;
-  return stipple::BeginProcess() != nullptr;
+  {
+    const stipple::SignalBlock signals_blocked;
+    if (stipple::BeginProcess() == nullptr) return false;
+  }
+  if (stipple::hooks.recording != nullptr) stipple::hooks.recording();
+  return true;
 }
 
 bool stipple_recording() {

@@ -37,6 +37,16 @@ std::uint64_t SparseDistance(const char* text) {
   return *text == '\0' && power_of_two && distance <= 4096 ? distance : 0;
 }
 
+/// Samples per second of a thread's processor time; 0: none.
+std::uint64_t SampleRate() {
+  constexpr std::uint64_t kMostHz = 10'000;
+  const char* text = getenv("STIPPLE_SAMPLE");
+  std::uint64_t hz = 0;
+  for (; text != nullptr && *text >= '0' && *text <= '9' && hz <= kMostHz; ++text)
+    hz = hz * 10 + static_cast<std::uint64_t>(*text - '0');
+  return hz <= kMostHz ? hz : 0;
+}
+
 void ReadClockSetting() {
   const char* clock = getenv("STIPPLE_CLOCK");
   if (clock == nullptr || *clock == '\0') clock = "exact";
@@ -62,6 +72,7 @@ const Settings& ReadSettings() {
   if (settings.archive != nullptr) {
     ReadClockSetting();
     settings.filter = CopyOfVariable("STIPPLE_FILTER");
+    settings.sample_hz = SampleRate();
     const char* paused = getenv("STIPPLE_PAUSED");
     settings.paused = paused != nullptr && *paused != '\0';
   }

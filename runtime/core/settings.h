@@ -11,12 +11,13 @@ struct Settings {
   const char* archive;       // absolute path of an existing directory; null: record nothing
   std::uint64_t clock_mask;  // stipple_control.clock_mask
   const char* filter;        // absolute path of a filter file; null: none
+  std::uint64_t sample_hz;   // 0: no samples
   bool paused;               // begin switched off
   char text[256];            // for the file header, "clock=exact"
 };
 
-/// Reads STIPPLE_ARCHIVE, STIPPLE_CLOCK, STIPPLE_FILTER and STIPPLE_PAUSED once; an unknown clock
-/// is named on stderr and exact is used.
+/// Reads STIPPLE_ARCHIVE, STIPPLE_CLOCK, STIPPLE_FILTER, STIPPLE_SAMPLE and STIPPLE_PAUSED once; an
+/// unknown clock is named on stderr and exact is used.
 const Settings& ReadSettings();
 
 }  // namespace stipple

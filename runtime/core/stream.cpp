@@ -13,6 +13,7 @@
 
 #include "runtime/core/chunk.h"
 #include "runtime/core/clock.h"
+#include "runtime/core/hooks.h"
 #include "runtime/core/process_end.h"
 #include "runtime/core/recorder.h"
 #include "runtime/core/region.h"
@@ -106,6 +107,7 @@ Thread* NewThread() {
   }
   stipple_stream = &thread->control;
   if (have_end_key) pthread_setspecific(end_key, thread);
+  if (hooks.thread_begun != nullptr) hooks.thread_begun();
   return thread;
 }
 
@@ -122,11 +124,11 @@ void NoteWaste(Thread& thread, std::uint64_t slot, std::uint64_t bytes) {
     thread.waste = slot;
 }
 
-/// Takes the thread's next chunk and decides whether its events step; false if recording has stopped.
+/// Takes the thread's next chunk and decides whether its events step; false if recording has
+/// stopped.
 bool TakeNextChunk(Process& process, Thread& thread, std::uint64_t bytes, std::uint64_t ticks) {
-  const bool slow =
-      thread.chunk == nullptr ||
-      ticks - reinterpret_cast<const ChunkHeader*>(thread.chunk)->ticks > kSlowTicks;
+  const bool slow = thread.chunk == nullptr ||
+                    ticks - reinterpret_cast<const ChunkHeader*>(thread.chunk)->ticks > kSlowTicks;
   if (!NextChunk(process, thread, bytes, ticks)) return false;
   if (slow) BeginStepping(thread, ticks);
   return true;
@@ -175,6 +177,7 @@ void AppendRecord(const void* record, RecordKind kind, std::size_t bytes) {
   Commit(place, MakeHeader(kind, bytes / 8, false));
   CopyBytes(place + 1, static_cast<const EventWord*>(record) + 1, bytes - 8);
   Commit(place, MakeHeader(kind, bytes / 8, true));
+  if (hooks.appended != nullptr) hooks.appended(kind);
 }
 
 namespace {
@@ -194,8 +197,8 @@ std::uint64_t AppendEvent(std::uint32_t region, bool leave) {
 }
 
 /// In the first round of key destructors the thread's function has been left, by whatever way. The
-/// last round ends the thread: what other keys' destructors do until then still belongs to it. Events
-/// after it still find the stream.
+/// last round ends the thread: what other keys' destructors do until then still belongs to it.
+/// Events after it still find the stream.
 void EndThread(void* pointer) {
   auto* thread = static_cast<Thread*>(pointer);
   // Zeroed: a forked child's, which has not recorded.
@@ -213,6 +216,7 @@ void EndThread(void* pointer) {
   record.ticks = ReadTicks();
   AppendRecord(&record, ThreadEnd::kKind, sizeof record);
   const SignalBlock signals_blocked;
+  if (hooks.thread_ended != nullptr) hooks.thread_ended();
   Process* process = ThisProcess();
   ForgetSkipped();
   if (thread->tid == 0 || process == nullptr) return;

@@ -55,7 +55,8 @@ std::int64_t ControlSlotOffset();
 /// Writes the visits that `process`'s threads counted only. The lock is held.
 void WriteVisitCounts(Process& process);
 
-/// Appends an event record (format.h), whether recording is switched on or off; its header is set here.
+/// Appends an event record (format.h), whether recording is switched on or off; its header is set
+/// here.
 void AppendRecord(const void* record, RecordKind kind, std::size_t bytes);
 
 /// Counts events that could not be recorded.

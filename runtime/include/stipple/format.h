@@ -357,17 +357,21 @@ struct CountedEnter {
 };
 static_assert(sizeof(CountedEnter) == 32);
 
-// Native stacks: `frames` words follow the struct, innermost first. A word is the number of a module
-// (DefineModule) in the high 16 bits and an offset as in DefineCode in the others; module 0: an
-// address outside of any file. But for the first word of a sample or of a crash they are return
+// Native stacks: `frames` words follow the struct, innermost first. A word is the number of a
+// module (DefineModule) in the high 16 bits and an offset as in DefineCode in the others; module 0:
+// an address outside of any file. But for the first word of a sample or of a crash they are return
 // addresses: the call is just before.
 
 inline constexpr int kFrameModuleShift = 48;
 inline constexpr std::uint64_t kFrameOffsetMask = (std::uint64_t{1} << kFrameModuleShift) - 1;
-inline constexpr std::uint32_t kMostFrames = 256;       // of one stack
-inline constexpr std::uint32_t kMostOuterFrames = 64;   // of them, the outermost of a cut stack
+inline constexpr std::uint32_t kMostFrames = 256;      // of one stack
+inline constexpr std::uint32_t kMostOuterFrames = 64;  // of them, the outermost of a cut stack
 
-/// The thread was found running here. Not an event of the program: a reader leaves it out of counts.
+/// For `cut`: more than kMostFrames, and of those only the innermost are there.
+inline constexpr std::uint32_t kUnknownCut = 0xffffffff;
+
+/// The thread was found running here. Not an event of the program: a reader leaves it out of
+/// counts.
 struct Sample {
   static constexpr RecordKind kKind = RecordKind::kSample;
   EventWord header;
