@@ -162,12 +162,7 @@ void OnCrash(int signal, siginfo_t* info, void* context) {
   LetDie(signal, info);
 }
 
-void PrepareProcess() {
-  static constinit bool prepared = false;
-  if (prepared) return;
-  prepared = true;
-  OpenUnwinder();
-  AddSignalStack();
+void StandInForCrashes() {
   for (const int signal : kCrashSignals) StandIn(signal, OnCrash);
 }
 
@@ -178,8 +173,9 @@ void LetCrashGoFirst(Process& process) {
 }
 
 __attribute__((constructor(102))) void Connect() {
-  if (ReadSettings().archive == nullptr) return;
-  hooks.recording = PrepareProcess;
+  if (ReadSettings().archive == nullptr || !PrepareStandIns()) return;
+  hooks.process_begun = StandInForCrashes;
+  hooks.recording = OpenUnwinder;
   hooks.thread_begun = AddSignalStack;
   hooks.thread_ended = DropSignalStack;
   hooks.process_ending = LetCrashGoFirst;

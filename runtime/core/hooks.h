@@ -10,8 +10,9 @@
 namespace stipple {
 
 struct Hooks {
-  void (*recording)();                // the process records; in the program's own context, no lock
-  void (*process_begun)(Process&);    // definitions can be written; the lock is held
+  void (*process_begun)();            // the lock is held
+  void (*definitions)(Process&);      // likewise, and definitions can be written
+  void (*recording)();                // in the program's own context: may load and allocate
   void (*thread_begun)();             // this thread has a stream; signals are blocked
   void (*thread_ended)();             // likewise, and will have no events but late ones
   void (*appended)(RecordKind kind);  // a record stands in this thread's stream

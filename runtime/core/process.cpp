@@ -231,7 +231,8 @@ Process* BeginProcess() {
     DefineCommandLine(*process);
     DefineAll(*process);
     DefineSwitches(*process);
-    if (hooks.process_begun != nullptr) hooks.process_begun(*process);
+    if (hooks.definitions != nullptr) hooks.definitions(*process);
+    if (hooks.process_begun != nullptr) hooks.process_begun();
     if (process->state.load(std::memory_order_relaxed) == State::kNew)
       process->state.store(State::kRecording, std::memory_order_release);
   }

@@ -213,9 +213,10 @@ __attribute__((constructor(103))) void BeginSampling() {
   if (settings.archive == nullptr || settings.sample_hz == 0) return;
   period_ns = 1'000'000'000 / settings.sample_hz;
   OpenUnwinder();
-  hooks.process_begun = DefineSampling;
+  hooks.definitions = DefineSampling;
   hooks.appended = FollowRecord;
   StandIn(kAskSignal, OnAsk);
+  if (hooks.process_begun != nullptr) hooks.process_begun();  // a crash may come before any sample
   pthread_atfork(HoldUnwinding, ReleaseUnwinding, BeginChild);
   have_end_key = pthread_key_create(&end_key, EndThreadSamples) == 0;
   BeginThreadSamples();

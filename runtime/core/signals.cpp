@@ -90,6 +90,8 @@ __thread char* own_stack = nullptr;
 
 namespace stipple {
 
+bool PrepareStandIns() { return RealAction() != nullptr; }
+
 void StandIn(int signal, Handler* handler) {
   SetAction* real = RealAction();
   Action before{};

@@ -15,6 +15,10 @@ using Handler = void(int signal, siginfo_t* info, void* context);
 /// use it (out-of-band data of sockets).
 inline constexpr int kAskSignal = SIGURG;
 
+/// What StandIn needs of libc: looked up while the library is loaded, since the loader's lock must
+/// not be waited for later. False: StandIn must not be called.
+bool PrepareStandIns();
+
 /// Stands in for the default action of `signal` from now on, as long as the program wants that
 /// one: what the program sees of it is SIG_DFL. Nothing if it has a handler or ignores it. Signals
 /// that come meanwhile are held back, but for faults.

@@ -370,8 +370,7 @@ inline constexpr std::uint32_t kMostOuterFrames = 64;  // of them, the outermost
 /// For `cut`: more than kMostFrames, and of those only the innermost are there.
 inline constexpr std::uint32_t kUnknownCut = 0xffffffff;
 
-/// The thread was found running here. Not an event of the program: a reader leaves it out of
-/// counts.
+/// The thread was found running here.
 struct Sample {
   static constexpr RecordKind kKind = RecordKind::kSample;
   EventWord header;
