@@ -24,6 +24,8 @@ class CallStack {
   std::span<const std::uint32_t> Record(const EventWord* record);
 
   std::size_t depth() const { return frames_.size(); }
+  /// Outermost first.
+  std::span<const std::uint32_t> frames() const { return frames_; }
   /// The innermost region; there must be one.
   std::uint32_t top() const { return frames_.back(); }
   std::uint32_t context() const { return points_.context(); }

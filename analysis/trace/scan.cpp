@@ -44,6 +44,30 @@ constexpr std::uint64_t BytesOf(RecordKind kind) {
   }
 }
 
+/// Bytes of the frames behind the struct of a native stack, `words` long; nothing if it is too
+/// short for its struct.
+template <class Record>
+bool HoldsFrames(const EventWord* word, std::uint64_t words) {
+  if (words * sizeof(EventWord) < sizeof(Record)) return false;
+  return words == sizeof(Record) / sizeof(EventWord) + RecordAt<Record>(word).frames;
+}
+
+/// Whether a record of a kind whose size varies is as long as it says inside; an open one need not
+/// say it yet.
+bool IsWhole(const EventWord* word, std::uint64_t words) {
+  if (!IsClosed(*word)) return true;
+  switch (KindOf(*word)) {
+    case RecordKind::kSample:
+      return HoldsFrames<Sample>(word, words);
+    case RecordKind::kCallPath:
+      return HoldsFrames<CallPath>(word, words);
+    case RecordKind::kCrash:
+      return HoldsFrames<Crash>(word, words);
+    default:
+      return true;
+  }
+}
+
 }  // namespace
 
 std::uint64_t SoundRecordWords(const EventWord* word, const EventWord* end) {
@@ -51,7 +75,8 @@ std::uint64_t SoundRecordWords(const EventWord* word, const EventWord* end) {
   const std::uint64_t expected = BytesOf(KindOf(*word));
   if (words == 0) return 0;
   if (expected != 0 && words * sizeof(EventWord) != expected) return 0;
-  return words <= static_cast<std::uint64_t>(end - word) ? words : 0;
+  if (words > static_cast<std::uint64_t>(end - word)) return 0;
+  return IsWhole(word, words) ? words : 0;
 }
 
 RecordStep StepRecord(const EventWord* word, const Chunk& chunk, std::uint64_t now,
