@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "analysis/report/tree_text.h"
 #include "analysis/stats/number.h"
 #include "analysis/trace/demangle.h"
 
@@ -23,11 +24,19 @@ struct Match : Cases... {
 template <class... Cases>
 Match(Cases...) -> Match<Cases...>;  // clang 14 does not find it by itself
 
+/// As tools that draw flames write a path.
+std::string Joined(const std::vector<std::string>& path) {
+  std::string text;
+  for (const std::string& name : path) text += (text.empty() ? "" : ";") + name;
+  return text;
+}
+
 std::string CellText(const Cell& cell) {
   return std::visit(Match{[](std::monostate) { return std::string("-"); },
                           [](std::int64_t v) { return fmt::format("{}", v); },
                           [](double v) { return fmt::format("{:.6f}", v); },
-                          [](const std::string& v) { return v; }},
+                          [](const std::string& v) { return v; },
+                          [](const std::vector<std::string>& v) { return Joined(v); }},
                     cell);
 }
 
@@ -42,10 +51,12 @@ std::string CellCsv(const Cell& cell) {
     out += '"';
     return out;
   };
-  return std::visit(Match{[](std::monostate) { return std::string(); },
-                          [](std::int64_t v) { return fmt::format("{}", v); },
-                          [](double v) { return fmt::format("{:.9f}", v); }, quoted},
-                    cell);
+  return std::visit(
+      Match{[](std::monostate) { return std::string(); },
+            [](std::int64_t v) { return fmt::format("{}", v); },
+            [](double v) { return fmt::format("{:.9f}", v); }, quoted,
+            [&quoted](const std::vector<std::string>& v) { return quoted(Joined(v)); }},
+      cell);
 }
 
 Json CellJson(const Cell& cell) {
@@ -77,6 +88,7 @@ Json MatrixJson(const Table& table) {
 }  // namespace
 
 std::string TableText(const Table& table) {
+  if (table.shape == TableShape::kTree) return TreeText(table);
   std::vector<std::size_t> widths;
   std::vector<std::vector<std::string>> lines(1);
   for (const Column& c : table.columns) lines.front().push_back(c.name);

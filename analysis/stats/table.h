@@ -13,7 +13,8 @@
 namespace stipple {
 
 /// One value; std::monostate is "was not recorded" (JSON null, never 0).
-using Cell = std::variant<std::monostate, std::int64_t, double, std::string>;
+using Cell =
+    std::variant<std::monostate, std::int64_t, double, std::string, std::vector<std::string>>;
 
 /// A row from its values. They are made in place: of a braced list of cells GCC 12 believes that it
 /// copies what was never set.
@@ -35,6 +36,8 @@ enum class TableShape {
   kObject,  // JSON: an object; one row
   kMatrix,  // JSON: {"rows","columns","values"}; the first column holds the row's name, the others
             // are the columns
+  kTree,    // as kRows; the first column is a path of names, each row before those below it, and
+            // "inclusive_s" what it counts for
 };
 
 /// A statistic over one archive (or a span of it).

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "analysis/stats/analysis.h"
+#include "analysis/stats/callpaths.h"
 #include "analysis/stats/finding_of.h"
 #include "analysis/stats/message_matrix.h"
 #include "analysis/stats/profile.h"
@@ -16,10 +17,41 @@
 namespace stipple {
 namespace {
 
+TableAnswer CallPaths(const Analysis& analysis, const Selection& selection, bool) {
+  const stipple::CallPaths paths = CallPathsOf(analysis.trace, selection);
+  TableAnswer answer{CallPathsTable(paths), "No region was visited."};
+  const PathTree& tree = paths.has_events ? paths.events : paths.samples;
+  const PathTree::Node* best = nullptr;
+  for (const PathTree::Node& n : tree.nodes())
+    if (!n.name.empty() && (best == nullptr || n.own.exclusive_ns > best->own.exclusive_ns))
+      best = &n;
+  if (best == nullptr) return answer;
+  std::string path;
+  for (const PathTree::Node* n = best; !n->name.empty(); n = &tree.nodes()[n->parent])
+    path = ShortName(n->name) + (path.empty() ? "" : " > ") + path;
+  answer.headline = PercentText(best->own.exclusive_ns, tree.nodes().front().inclusive_ns) +
+                    " of the time is spent at the end of " + path + ".";
+  if (!paths.has_events) answer.headline += " " + SamplesText(paths);
+  return answer;
+}
+
+/// Without events: from samples, if there are any.
+TableAnswer SampledProfile(const Analysis& analysis, const Selection& selection) {
+  const stipple::CallPaths paths = CallPathsOf(analysis.trace, selection);
+  TableAnswer answer{SampledProfileTable(paths), "No region was visited."};
+  const auto& rows = answer.table.rows;
+  if (!rows.empty())
+    answer.headline = PercentText(std::get<double>(rows.front().back()), paths.sampled_ns * 1e-9) +
+                      " of the time is spent in " +
+                      ShortName(std::get<std::string>(rows.front().front())) + " itself. " +
+                      SamplesText(paths);
+  return answer;
+}
+
 TableAnswer Profile(const Analysis& analysis, const Selection& selection, bool per_rank) {
   TableAnswer answer{ProfileTable(analysis, selection, per_rank), "No region was visited."};
   const auto& rows = answer.table.rows;
-  if (rows.empty()) return answer;
+  if (rows.empty()) return per_rank ? answer : SampledProfile(analysis, selection);
   double sum = 0;
   for (const auto& row : rows) sum += std::get<double>(row.back());
   const auto& first = rows.front();
@@ -86,6 +118,7 @@ TableAnswer Imbalance(const Analysis& analysis, const Selection& selection, bool
 
 constexpr std::array kTables = {
     TableEntry{"profile", Profile, "time and calls per region, most exclusive time first", true},
+    TableEntry{"callpaths", CallPaths, "time, calls and messages per chain of calls, a tree"},
     TableEntry{"states", States, "user, system, message and idle time of each rank"},
     TableEntry{"messages", Messages, "how many messages each rank sent to each (sender = row)"},
     TableEntry{"volume", Volume, "how many bytes each rank sent to each (sender = row)"},

@@ -26,6 +26,8 @@ class CallStack {
   void Begin(const EventWord* open_frames, std::span<const std::uint32_t> regions);
 
   std::size_t depth() const { return frames_.size(); }
+  /// Outermost first.
+  std::span<const std::uint32_t> frames() const { return frames_; }
   /// The innermost region; there must be one.
   std::uint32_t top() const { return frames_.back(); }
   std::uint32_t context() const { return points_.context(); }

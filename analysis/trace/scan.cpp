@@ -54,6 +54,30 @@ std::uint64_t OpenFramesBytes(const EventWord* word, const EventWord* end) {
          std::uint64_t{r.points} * sizeof(OpenPoint);
 }
 
+/// Bytes of the frames behind the struct of a native stack, `words` long; nothing if it is too
+/// short for its struct.
+template <class Record>
+bool HoldsFrames(const EventWord* word, std::uint64_t words) {
+  if (words * sizeof(EventWord) < sizeof(Record)) return false;
+  return words == sizeof(Record) / sizeof(EventWord) + RecordAt<Record>(word).frames;
+}
+
+/// Whether a record of a kind whose size varies is as long as it says inside; an open one need not
+/// say it yet.
+bool IsWhole(const EventWord* word, std::uint64_t words) {
+  if (!IsClosed(*word)) return true;
+  switch (KindOf(*word)) {
+    case RecordKind::kSample:
+      return HoldsFrames<Sample>(word, words);
+    case RecordKind::kCallPath:
+      return HoldsFrames<CallPath>(word, words);
+    case RecordKind::kCrash:
+      return HoldsFrames<Crash>(word, words);
+    default:
+      return true;
+  }
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> OpenRegions(const EventWord* record, std::uint32_t region_count) {
@@ -79,7 +103,8 @@ std::uint64_t SoundRecordWords(const EventWord* word, const EventWord* end) {
                                      : BytesOf(KindOf(*word));
   if (words == 0) return 0;
   if (expected != 0 && words * sizeof(EventWord) != expected) return 0;
-  return words <= static_cast<std::uint64_t>(end - word) ? words : 0;
+  if (words > static_cast<std::uint64_t>(end - word)) return 0;
+  return IsWhole(word, words) ? words : 0;
 }
 
 RecordStep StepRecord(const EventWord* word, const Chunk& chunk, std::uint64_t now,

@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/trace/symbols.h"
 
+#include <dwarf.h>
 #include <elfutils/libdw.h>
 #include <elfutils/libdwfl.h>
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "analysis/trace/demangle.h"
 
 namespace stipple {
 namespace {
@@ -47,18 +51,71 @@ class SymbolFile {
                                             nullptr, nullptr);
     if (name == nullptr || distance != 0) return std::nullopt;
     Symbol found{name, "", 0};
-    if (Dwarf_Line* row = RowAt(offset + bias_)) {
-      int line = 0;
-      const char* file = dwarf_linesrc(row, nullptr, nullptr);
-      if (file != nullptr && dwarf_lineno(row, &line) == 0) {
-        found.file = file;
-        found.line = static_cast<std::uint32_t>(line);
-      }
+    FindLine(offset, found);
+    return found;
+  }
+
+  /// The functions whose code is at `offset`, the innermost of those that were inlined there first,
+  /// each with the line where it was at. Empty: not known.
+  std::vector<Symbol> Around(std::uint64_t offset) {
+    if (module_ == nullptr) return {};
+    const char* name = dwfl_module_addrname(module_, offset + bias_);
+    if (name == nullptr) return {};
+    Symbol place{"", "", 0};
+    FindLine(offset, place);
+    std::vector<Symbol> found;
+    const Piece* piece = PieceAt(offset + bias_);
+    Dwarf_Die* scopes = nullptr;
+    const int count =
+        piece == nullptr ? 0 : dwarf_getscopes(piece->unit, offset + bias_ - piece->bias, &scopes);
+    for (int i = 0; i < count; ++i) {
+      if (dwarf_tag(scopes + i) == DW_TAG_subprogram) break;
+      if (dwarf_tag(scopes + i) != DW_TAG_inlined_subroutine) continue;
+      found.push_back(place);
+      found.back().linkage_name = LinkageName(scopes + i);
+      place = CallPlace(piece->unit, scopes + i);
     }
+    std::free(scopes);
+    place.linkage_name = name;
+    found.push_back(std::move(place));
     return found;
   }
 
  private:
+  void FindLine(std::uint64_t offset, Symbol& found) {
+    Dwarf_Line* row = RowAt(offset + bias_);
+    int line = 0;
+    const char* file = row == nullptr ? nullptr : dwarf_linesrc(row, nullptr, nullptr);
+    if (file == nullptr || dwarf_lineno(row, &line) != 0) return;
+    found.file = file;
+    found.line = static_cast<std::uint32_t>(line);
+  }
+
+  static std::string LinkageName(Dwarf_Die* function) {
+    Dwarf_Attribute attribute;
+    for (const unsigned which : {unsigned{DW_AT_linkage_name}, unsigned{DW_AT_name}})
+      if (const char* text = dwarf_formstring(dwarf_attr_integrate(function, which, &attribute)))
+        return text;
+    return "(inlined)";
+  }
+
+  /// Where an inlined function was called.
+  static Symbol CallPlace(Dwarf_Die* unit, Dwarf_Die* function) {
+    Symbol place{"", "", 0};
+    Dwarf_Attribute attribute;
+    Dwarf_Word file = 0;
+    Dwarf_Word line = 0;
+    Dwarf_Files* files = nullptr;
+    std::size_t count = 0;
+    if (dwarf_formudata(dwarf_attr(function, DW_AT_call_file, &attribute), &file) != 0 ||
+        dwarf_formudata(dwarf_attr(function, DW_AT_call_line, &attribute), &line) != 0 ||
+        dwarf_getsrcfiles(unit, &files, &count) != 0 || file >= count)
+      return place;
+    if (const char* path = dwarf_filesrc(files, file, nullptr, nullptr)) place.file = path;
+    place.line = static_cast<std::uint32_t>(line);
+    return place;
+  }
+
   std::string_view BuildId() const {
     const unsigned char* bytes = nullptr;
     GElf_Addr address = 0;
@@ -75,11 +132,14 @@ class SymbolFile {
   };
 
   // By its own index: elfutils' look-up by address needs a section that clang does not write.
-  Dwarf_Line* RowAt(Dwarf_Addr address) {
+  const Piece* PieceAt(Dwarf_Addr address) {
     if (!indexed_) IndexUnits();
     auto piece = std::ranges::upper_bound(pieces_, address, {}, &Piece::begin);
-    if (piece == pieces_.begin() || address >= (--piece)->end) return nullptr;
-    return dwarf_getsrc_die(piece->unit, address - piece->bias);
+    return piece == pieces_.begin() || address >= (--piece)->end ? nullptr : &*piece;
+  }
+  Dwarf_Line* RowAt(Dwarf_Addr address) {
+    const Piece* piece = PieceAt(address);
+    return piece == nullptr ? nullptr : dwarf_getsrc_die(piece->unit, address - piece->bias);
   }
 
   void IndexUnits() {
@@ -104,6 +164,8 @@ class SymbolFile {
   std::vector<Piece> pieces_;  // by begin
 };
 
+}  // namespace
+
 /// Each file is opened once and each address looked up once, however many processes used them.
 class SymbolCache {
  public:
@@ -116,6 +178,10 @@ class SymbolCache {
       if (!at->second) health.Add(Defect::kUnnamedFunction, module.path);
     }
     return at->second ? &*at->second : nullptr;
+  }
+
+  std::vector<Symbol> Around(const ModuleDefinition& module, std::uint64_t offset) {
+    return EntryOf(module).file.Around(offset);
   }
 
  private:
@@ -133,8 +199,6 @@ class SymbolCache {
 
   std::map<std::pair<std::string, std::string>, std::unique_ptr<Entry>> entries_;
 };
-
-}  // namespace
 
 void NameCode(std::span<const std::unique_ptr<Stream>> streams, TraceHealth& health) {
   SymbolCache cache;
@@ -159,6 +223,27 @@ void NameCode(std::span<const std::unique_ptr<Stream>> streams, TraceHealth& hea
       region->second->line = symbol->line;
     }
   }
+}
+
+FrameNames::FrameNames() : cache_(std::make_unique<SymbolCache>()) {}
+FrameNames::~FrameNames() = default;
+
+const std::vector<FrameName>& FrameNames::Of(const Stream& stream, std::uint64_t frame,
+                                             bool is_return) {
+  // A call that does not return may be the last instruction of its function: its return address
+  // belongs to another one.
+  const std::uint64_t address = is_return ? frame - 1 : frame;
+  std::vector<FrameName>& names = names_[{&stream, address}];
+  if (!names.empty()) return names;
+  const auto number = static_cast<std::uint32_t>(frame >> kFrameModuleShift);
+  const auto module = std::ranges::find(stream.modules, number, &ModuleDefinition::module);
+  if (number == 0 || module == stream.modules.end())
+    return names = {{"(no file)", "", 0, false, ""}};
+  const std::string file = std::filesystem::path(module->path).filename();
+  for (const Symbol& s : cache_->Around(*module, address & kFrameOffsetMask))
+    names.push_back({Demangle(s.linkage_name), s.file, s.line, true, file});
+  if (names.empty()) names.push_back({"(" + file + ")", "", 0, false, file});
+  return names;
 }
 
 }  // namespace stipple

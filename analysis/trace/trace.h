@@ -18,6 +18,7 @@
 #include "analysis/trace/read_meter.h"
 #include "analysis/trace/scan.h"
 #include "analysis/trace/stream.h"
+#include "analysis/trace/symbols.h"
 #include "stipple/format.h"
 
 namespace stipple {
@@ -152,6 +153,12 @@ class Trace {
   /// Of the last Scan; scans if there was none.
   const ScanCounts& CountsOf(const Location& l) const;
 
+  /// Names for the native stacks of a process; see FrameNames. One thread at a time.
+  const std::vector<FrameName>& FrameNamesOf(const Process& p, std::uint64_t frame,
+                                             bool is_return) const {
+    return frame_names_->Of(*p.stream, frame, is_return);
+  }
+
   /// What headers and definitions tell.
   const TraceHealth& header_health() const { return health_; }
   /// That, and what a scan of all events found.
@@ -180,6 +187,7 @@ class Trace {
   int rank_count_ = 0;
   TraceHealth health_;
   mutable std::vector<std::optional<ScanCounts>> counts_;
+  std::unique_ptr<FrameNames> frame_names_ = std::make_unique<FrameNames>();
   ReadMeter* meter_ = nullptr;
 };
 

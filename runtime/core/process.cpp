@@ -11,6 +11,7 @@
 #include <sys/utsname.h>
 
 #include "runtime/core/clock.h"
+#include "runtime/core/hooks.h"
 #include "runtime/core/observer.h"
 #include "runtime/core/recorder.h"
 #include "runtime/core/region.h"
@@ -187,6 +188,8 @@ int BeginFile(Process& process, const char* archive) {
 
 }  // namespace
 
+constinit Hooks hooks{};
+
 Process* ThisProcess() {
   Process* process = this_process.load(std::memory_order_acquire);
   if (process != nullptr) return process;
@@ -231,6 +234,8 @@ Process* BeginProcess() {
     DefineCommandLine(*process);
     DefineAll(*process);
     DefineSwitches(*process);
+    if (hooks.definitions != nullptr) hooks.definitions(*process);
+    if (hooks.process_begun != nullptr) hooks.process_begun();
     if (process->state.load(std::memory_order_relaxed) == State::kNew)
       process->state.store(State::kRecording, std::memory_order_release);
   }
@@ -270,6 +275,7 @@ void NoteEnd(Ending how, int status) {
   if (process->pid != GetPid()) return;
   if (process->state.load(std::memory_order_acquire) == State::kRecording)
     Tell(&stipple_observer::process_ends);
+  if (hooks.process_ending != nullptr) hooks.process_ending(*process);
   Holding holding(process->lock);
   WriteVisitCounts(*process);
   if (ProcessEnd* place = process->definitions.process_end) {
@@ -303,8 +309,12 @@ void RetractEnd() {
 extern "C" {
 
 bool stipple_begin() {
-  const stipple::SignalBlock signals_blocked;
-  return stipple::BeginProcess() != nullptr;
+  {
+    const stipple::SignalBlock signals_blocked;
+    if (stipple::BeginProcess() == nullptr) return false;
+  }
+  if (stipple::hooks.recording != nullptr) stipple::hooks.recording();
+  return true;
 }
 
 bool stipple_recording() {

@@ -22,7 +22,13 @@ enum class State : std::uint32_t {
 };
 
 /// How a process ended, as ProcessEnd says it.
-enum class Ending : std::uint32_t { kExit = 1, kImmediateExit = 2, kAbort = 3, kExec = 4 };
+enum class Ending : std::uint32_t {
+  kExit = 1,
+  kImmediateExit = 2,
+  kAbort = 3,
+  kExec = 4,
+  kSignal = 5
+};
 
 /// Where the next definition goes. The last bytes of each chunk are kept for the two records that
 /// must never fail.
@@ -50,9 +56,11 @@ struct Process {
   int error;  // errno that stopped the recording
   std::uint32_t said_line;
   std::uint32_t calibrated;
-  std::uint32_t watched;    // a thread of ours watches for silent ones
-  std::uint64_t stop_ms;    // after begin
-  std::uint32_t unloading;  // calls of dlclose that are under way
+  std::uint32_t watched;                // a thread of ours watches for silent ones
+  std::atomic<std::uint32_t> crashing;  // tid of the first thread that a fatal signal hit
+  std::atomic<std::uint32_t> answered;  // threads that have written their stacks for it
+  std::uint64_t stop_ms;                // after begin
+  std::uint32_t unloading;              // calls of dlclose that are under way
   std::uint32_t reserved;
   StreamFile file;
   FileHeader* header;  // in the file, mapped

@@ -7,6 +7,7 @@
 #include "runtime/core/address.h"
 #include "runtime/core/arena.h"
 #include "runtime/core/filter.h"
+#include "runtime/core/hooks.h"
 #include "runtime/core/line.h"
 #include "runtime/core/recorder.h"
 #include "runtime/core/settings.h"
@@ -394,7 +395,7 @@ std::uint32_t NameId(Process& process, const char* name, const char* unit) {
 
 extern "C" {
 
-void stipple_register(struct stipple_dso* dso) {
+static void RegisterObject(struct stipple_dso* dso) {
   if (dso == nullptr || dso->abi != STIPPLE_ABI ||
       dso->descriptor_bytes != sizeof(stipple_descriptor) || dso->begin == dso->end)
     return;
@@ -410,6 +411,12 @@ void stipple_register(struct stipple_dso* dso) {
   dso->tp_offset = stipple::ControlSlotOffset();
   dso->slow = stipple_slow;
   stipple::DefineObject(*process, object);
+}
+
+void stipple_register(struct stipple_dso* dso) {
+  RegisterObject(dso);
+  const stipple::Hooks& hooks = stipple::hooks;
+  if (hooks.recording != nullptr && stipple_recording()) hooks.recording();
 }
 
 void stipple_unregister(struct stipple_dso* dso) {

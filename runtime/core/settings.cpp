@@ -57,6 +57,16 @@ double BudgetShare(const char* text) {
   return *text == '\0' && digits && percent <= 100 ? percent / 100 : 0;
 }
 
+/// Samples per second of a thread's processor time; 0: none.
+std::uint64_t SampleRate() {
+  constexpr std::uint64_t kMostHz = 10'000;
+  const char* text = getenv("STIPPLE_SAMPLE");
+  std::uint64_t hz = 0;
+  for (; text != nullptr && *text >= '0' && *text <= '9' && hz <= kMostHz; ++text)
+    hz = hz * 10 + static_cast<std::uint64_t>(*text - '0');
+  return hz <= kMostHz ? hz : 0;
+}
+
 void ReadClockSetting() {
   const char* clock = getenv("STIPPLE_CLOCK");
   if (clock == nullptr || *clock == '\0') clock = "budget:5";
@@ -96,6 +106,7 @@ const Settings& ReadSettings() {
     ReadClockSetting();
     settings.filter = CopyOfVariable("STIPPLE_FILTER");
     ReadMaxBytes();
+    settings.sample_hz = SampleRate();
     const char* paused = getenv("STIPPLE_PAUSED");
     settings.paused = paused != nullptr && *paused != '\0';
   }

@@ -12,13 +12,14 @@ struct Settings {
   std::uint64_t clock_mask;  // stipple_control.clock_mask
   double budget;             // share of the time that recording may take; 0: no limit
   const char* filter;        // absolute path of a filter file; null: none
+  std::uint64_t sample_hz;   // 0: no samples
   bool paused;               // begin switched off
   std::uint64_t max_bytes;   // of events that a process keeps: a ring; 0: all
   char text[256];            // for the file header, "clock=exact"
 };
 
-/// Reads STIPPLE_ARCHIVE, STIPPLE_CLOCK, STIPPLE_FILTER, STIPPLE_PAUSED and STIPPLE_MAX_BYTES once; an unknown clock
-/// is named on stderr and exact is used.
+/// Reads STIPPLE_ARCHIVE, STIPPLE_CLOCK, STIPPLE_FILTER, STIPPLE_SAMPLE, STIPPLE_PAUSED and
+/// STIPPLE_MAX_BYTES once; an unknown clock is named on stderr and exact is used.
 const Settings& ReadSettings();
 
 }  // namespace stipple

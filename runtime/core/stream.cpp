@@ -15,6 +15,7 @@
 #include "runtime/core/calibration.h"
 #include "runtime/core/chunk.h"
 #include "runtime/core/clock.h"
+#include "runtime/core/hooks.h"
 #include "runtime/core/observer.h"
 #include "runtime/core/process_end.h"
 #include "runtime/core/recorder.h"
@@ -120,6 +121,7 @@ Thread* NewThread() {
   stipple_stream = &thread->control;
   if (have_end_key) pthread_setspecific(end_key, thread);
   Tell(&stipple_observer::thread_began, thread->index, thread->tid);
+  if (hooks.thread_begun != nullptr) hooks.thread_begun();
   return thread;
 }
 
@@ -135,11 +137,11 @@ void Commit(EventWord* place, EventWord word) {
   std::atomic_ref<EventWord>(*place).store(word, std::memory_order_release);
 }
 
-/// Takes the thread's next chunk and decides whether its events step; false if recording has stopped.
+/// Takes the thread's next chunk and decides whether its events step; false if recording has
+/// stopped.
 bool TakeNextChunk(Process& process, Thread& thread, std::uint64_t bytes, std::uint64_t ticks) {
-  const bool slow =
-      thread.chunk == nullptr ||
-      ticks - reinterpret_cast<const ChunkHeader*>(thread.chunk)->ticks > kSlowTicks;
+  const bool slow = thread.chunk == nullptr ||
+                    ticks - reinterpret_cast<const ChunkHeader*>(thread.chunk)->ticks > kSlowTicks;
   if (thread.chunk != nullptr) Review(process, thread, ticks);
   if (!NextChunk(process, thread, bytes, ticks)) return false;
   thread.review_from = thread.control.cur;
@@ -192,7 +194,10 @@ EventWord* ReserveRecord(std::uint64_t bytes) {
 }  // namespace
 
 void AppendRecord(const void* record, RecordKind kind, std::size_t bytes) {
-  if (EventWord* place = ReserveRecord(bytes)) WriteRecord(place, record, kind, bytes);
+  EventWord* place = ReserveRecord(bytes);
+  if (place == nullptr) return;
+  WriteRecord(place, record, kind, bytes);
+  if (hooks.appended != nullptr) hooks.appended(kind);
 }
 
 void AppendInside(const void* record, RecordKind kind, std::size_t bytes) {
@@ -219,8 +224,8 @@ std::uint64_t AppendEvent(std::uint32_t region, bool leave) {
 }
 
 /// In the first round of key destructors the thread's function has been left, by whatever way. The
-/// last round ends the thread: what other keys' destructors do until then still belongs to it. Events
-/// after it still find the stream.
+/// last round ends the thread: what other keys' destructors do until then still belongs to it.
+/// Events after it still find the stream.
 void EndThread(void* pointer) {
   auto* thread = static_cast<Thread*>(pointer);
   // Zeroed: a forked child's, which has not recorded.
@@ -238,6 +243,7 @@ void EndThread(void* pointer) {
   record.ticks = ReadTicks();
   AppendRecord(&record, ThreadEnd::kKind, sizeof record);
   const SignalBlock signals_blocked;
+  if (hooks.thread_ended != nullptr) hooks.thread_ended();
   Process* process = ThisProcess();
   ForgetSkipped();
   if (thread->tid == 0 || process == nullptr) return;

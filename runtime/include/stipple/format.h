@@ -435,6 +435,53 @@ struct SystemCall {
 };
 static_assert(sizeof(SystemCall) == 40);
 
+// Native stacks: `frames` words follow the struct, innermost first. A word is the number of a
+// module (DefineModule) in the high 16 bits and an offset as in DefineCode in the others; module 0:
+// an address outside of any file. But for the first word of a sample or of a crash they are return
+// addresses: the call is just before.
+
+inline constexpr int kFrameModuleShift = 48;
+inline constexpr std::uint64_t kFrameOffsetMask = (std::uint64_t{1} << kFrameModuleShift) - 1;
+inline constexpr std::uint32_t kMostFrames = 256;      // of one stack
+inline constexpr std::uint32_t kMostOuterFrames = 64;  // of them, the outermost of a cut stack
+
+/// For `cut`: more than kMostFrames, and of those only the innermost are there.
+inline constexpr std::uint32_t kUnknownCut = 0xffffffff;
+
+/// The thread was found running here.
+struct Sample {
+  static constexpr RecordKind kKind = RecordKind::kSample;
+  EventWord header;
+  std::uint64_t ticks;
+  std::uint64_t cpu_ns;  // processor time of the thread that the sample stands for
+  std::uint32_t frames;
+  std::uint32_t cut;  // frames left out, before the last kMostOuterFrames; 0: none
+};
+static_assert(sizeof(Sample) == 32);
+
+/// Frames below the event before it, a message, a mark or a collective; without frames of stipple.
+struct CallPath {
+  static constexpr RecordKind kKind = RecordKind::kCallPath;
+  EventWord header;
+  std::uint64_t ticks;
+  std::uint32_t frames;
+  std::uint32_t cut;  // as in Sample
+};
+static_assert(sizeof(CallPath) == 24);
+
+/// A signal ends the process; where this thread was. One for each thread that answered.
+struct Crash {
+  static constexpr RecordKind kKind = RecordKind::kCrash;
+  EventWord header;
+  std::uint64_t ticks;
+  std::uint64_t address;  // si_addr; with code <= 0 (sent by a process): the sender's pid
+  std::int32_t signal;    // 0: another thread's
+  std::int32_t code;      // si_code
+  std::uint32_t frames;
+  std::uint32_t cut;  // as in Sample
+};
+static_assert(sizeof(Crash) == 40);
+
 // Definitions. Text follows the struct: its parts without terminators, one after the other,
 // zero-padded to 8 bytes.
 
@@ -524,14 +571,14 @@ struct Loss {
 };
 static_assert(sizeof(Loss) == 32);
 
-/// The process ended in order: the runtime saw return from main, exit, _exit or abort.
+/// The runtime saw the process's end: return from main, exit, _exit, abort or a fatal signal.
 struct ProcessEnd {
   static constexpr RecordKind kKind = RecordKind::kProcessEnd;
   EventWord header;
   std::uint64_t ticks;
   std::uint64_t raw_ns;  // CLOCK_MONOTONIC_RAW at `ticks`
   std::uint64_t lost;    // events of the process that could not be recorded
-  std::uint32_t how;     // 1 return or exit, 2 _exit, 3 abort, 4 exec
+  std::uint32_t how;     // 1 return or exit, 2 _exit, 3 abort, 4 exec, 5 signal (status: which)
   std::int32_t status;
 };
 static_assert(sizeof(ProcessEnd) == 40);
@@ -565,7 +612,7 @@ struct CommandLine {
 };
 static_assert(sizeof(CommandLine) == 16);
 
-/// A file with code whose functions are known by their addresses only (-finstrument-functions): its
+/// A file with code, for functions known by address (-finstrument-functions) and native stacks: its
 /// path as it was mapped, then the bytes of its build-id (none: it has none).
 struct DefineModule {
   static constexpr RecordKind kKind = RecordKind::kDefineModule;
