@@ -8,7 +8,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-struct stipple_name;  // user.h
+// user.h
+struct stipple_channel;
+struct stipple_name;
+struct stipple_region;
 
 #pragma GCC visibility push(default)
 extern "C" {
@@ -46,6 +49,13 @@ void stipple_define(const void* record, uint8_t kind, size_t bytes, const void* 
 void stipple_record_mark(struct stipple_name* name);
 void stipple_record_counter(struct stipple_name* name, double value);
 void stipple_record_host(void);
+void stipple_record_begin(struct stipple_region* region);
+void stipple_record_end(struct stipple_region* region);
+void stipple_record_send(struct stipple_channel* channel, uint64_t key, uint64_t bytes);
+void stipple_record_receive(struct stipple_channel* channel, uint64_t key, uint64_t bytes,
+                            uint64_t waiting_since);
+uint32_t stipple_define_name(const char* name, const char* unit);
+uint32_t stipple_define_channel(const char* name);
 void stipple_switch(int on);
 void stipple_switch_regions(const char* pattern, int on);
 }
