@@ -105,7 +105,10 @@ void stipple_record_send(struct stipple_channel* channel, uint64_t key, uint64_t
 void stipple_record_receive(struct stipple_channel* channel, uint64_t key, uint64_t bytes,
                             uint64_t waiting_since) {
   stipple::ThreadReceive record{};
-  record.ticks = stipple::ReadTicks();  // first: the message is here
+  // First, since the message is here; and not before what took it has been executed, or a receive
+  // could be told earlier than its send.
+  __builtin_ia32_lfence();
+  record.ticks = stipple::ReadTicks();
   record.channel = stipple::ChannelOf(channel);
   if (record.channel == 0) return;
   record.bytes = bytes;

@@ -59,31 +59,39 @@ struct stipple_channel {
 #define STIPPLE_RUNTIME_FUNCTION(symbol, pointer) ((pointer) = 0)
 #endif
 
-/* The region begins or ends on this thread. Regions nest among each other and with functions; one
- * that is begun and not ended ends with the function or region around it. */
+/* A call that the compiler cannot put behind the function's own end, as it does with the last one
+ * of a function: the event belongs into it. */
+#define STIPPLE_CALL(call) \
+  do {                     \
+    call;                  \
+    __asm__ volatile("");  \
+  } while (0)
+
+/* The region begins or ends on this thread. Regions nest among each other and with functions, so
+ * one ends in the function that began it; if it has not, it ends there. */
 STIPPLE_INLINE void stipple_region_begin(struct stipple_region* region) {
   void (*record)(struct stipple_region*);
   STIPPLE_RUNTIME_FUNCTION(stipple_record_begin, record);
-  if (record) record(region);
+  if (record) STIPPLE_CALL(record(region));
 }
 STIPPLE_INLINE void stipple_region_end(struct stipple_region* region) {
   void (*record)(struct stipple_region*);
   STIPPLE_RUNTIME_FUNCTION(stipple_record_end, record);
-  if (record) record(region);
+  if (record) STIPPLE_CALL(record(region));
 }
 
 /* Marks a moment: the start of a phase, a decision, an end of supply. */
 STIPPLE_INLINE void stipple_mark(struct stipple_name* name) {
   void (*record)(struct stipple_name*);
   STIPPLE_RUNTIME_FUNCTION(stipple_record_mark, record);
-  if (record) record(name);
+  if (record) STIPPLE_CALL(record(name));
 }
 
 /* Records the value that a counter of this process has from now on, in the name's unit. */
 STIPPLE_INLINE void stipple_counter(struct stipple_name* name, double value) {
   void (*record)(struct stipple_name*, double);
   STIPPLE_RUNTIME_FUNCTION(stipple_record_counter, record);
-  if (record) record(name, value);
+  if (record) STIPPLE_CALL(record(name, value));
 }
 
 /* The time, for stipple_receive: ticks of the archive's clock; 0 without a runtime. */
@@ -100,13 +108,13 @@ STIPPLE_INLINE uint64_t stipple_time(void) {
 STIPPLE_INLINE void stipple_send(struct stipple_channel* channel, uint64_t key, uint64_t bytes) {
   void (*record)(struct stipple_channel*, uint64_t, uint64_t);
   STIPPLE_RUNTIME_FUNCTION(stipple_record_send, record);
-  if (record) record(channel, key, bytes);
+  if (record) STIPPLE_CALL(record(channel, key, bytes));
 }
 STIPPLE_INLINE void stipple_receive(struct stipple_channel* channel, uint64_t key, uint64_t bytes,
                                     uint64_t waiting_since) {
   void (*record)(struct stipple_channel*, uint64_t, uint64_t, uint64_t);
   STIPPLE_RUNTIME_FUNCTION(stipple_record_receive, record);
-  if (record) record(channel, key, bytes, waiting_since);
+  if (record) STIPPLE_CALL(record(channel, key, bytes, waiting_since));
 }
 
 /* Handles with names made at run time. The text is copied, so it may go away at once. Each call
@@ -139,7 +147,7 @@ STIPPLE_INLINE struct stipple_channel stipple_make_channel(const char* name) {
 STIPPLE_INLINE void stipple_host(void) {
   void (*record)(void);
   STIPPLE_RUNTIME_FUNCTION(stipple_record_host, record);
-  if (record) record();
+  if (record) STIPPLE_CALL(record());
 }
 
 /* Switches recording off and on again, in all threads of this process. In between there are no
@@ -148,12 +156,12 @@ STIPPLE_INLINE void stipple_host(void) {
 STIPPLE_INLINE void stipple_stop(void) {
   void (*record)(int);
   STIPPLE_RUNTIME_FUNCTION(stipple_switch, record);
-  if (record) record(0);
+  if (record) STIPPLE_CALL(record(0));
 }
 STIPPLE_INLINE void stipple_start(void) {
   void (*record)(int);
   STIPPLE_RUNTIME_FUNCTION(stipple_switch, record);
-  if (record) record(1);
+  if (record) STIPPLE_CALL(record(1));
 }
 
 /* The same for the functions loaded now whose names match a pattern of a filter file, such as
@@ -163,12 +171,12 @@ STIPPLE_INLINE void stipple_start(void) {
 STIPPLE_INLINE void stipple_stop_regions(const char* pattern) {
   void (*record)(const char*, int);
   STIPPLE_RUNTIME_FUNCTION(stipple_switch_regions, record);
-  if (record) record(pattern, 0);
+  if (record) STIPPLE_CALL(record(pattern, 0));
 }
 STIPPLE_INLINE void stipple_start_regions(const char* pattern) {
   void (*record)(const char*, int);
   STIPPLE_RUNTIME_FUNCTION(stipple_switch_regions, record);
-  if (record) record(pattern, 1);
+  if (record) STIPPLE_CALL(record(pattern, 1));
 }
 
 #ifdef __cplusplus
