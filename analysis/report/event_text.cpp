@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "analysis/stats/number.h"
+
 namespace stipple {
 namespace {
 
@@ -30,6 +32,14 @@ std::string CounterText(const Trace& trace, const Process& p, const Counter& r) 
                      name.unit);
 }
 
+/// Both ends of a message between threads.
+template <class End>
+std::string ThreadMessageText(const Trace& trace, const Process& p, const char* what,
+                              const End& r) {
+  return fmt::format("{} {} through {} key {}", what, r.bytes,
+                     trace.channels()[p.ChannelOf(r.channel)], r.key);
+}
+
 /// Records that a canonical text shows.
 std::string StableText(const Trace& trace, const Process& p, const EventWord* record) {
   switch (KindOf(*record)) {
@@ -49,6 +59,10 @@ std::string StableText(const Trace& trace, const Process& p, const EventWord* re
     }
     case RecordKind::kMpiCollective:
       return CollectiveText(trace, p, RecordAt<MpiCollective>(record));
+    case RecordKind::kThreadSend:
+      return ThreadMessageText(trace, p, "send", RecordAt<ThreadSend>(record));
+    case RecordKind::kThreadReceive:
+      return ThreadMessageText(trace, p, "receive", RecordAt<ThreadReceive>(record));
     case RecordKind::kThreadEnd:
       return "thread end";
     default:
@@ -92,6 +106,13 @@ std::string TimingText(const Trace& trace, const Process& p, const EventWord* re
   }
 }
 
+/// How long a receiver looked for its message; empty when it did not say.
+std::string WaitedText(const Trace& trace, const Location& location, const ThreadReceive& r) {
+  if (r.waiting_since == 0 || r.waiting_since > r.ticks) return {};
+  const std::int64_t ns = trace.TimeNs(location, r.ticks) - trace.TimeNs(location, r.waiting_since);
+  return ", waited " + FormatSeconds(static_cast<double>(ns) * 1e-9);
+}
+
 }  // namespace
 
 std::string CanonicalText(const Trace& trace, const Location& location, const Event& event) {
@@ -104,6 +125,8 @@ std::string CanonicalText(const Trace& trace, const Location& location, const Ev
 std::string EventText(const Trace& trace, const Location& location, const Event& event) {
   if (event.record != nullptr) {
     std::string text = StableText(trace, trace.ProcessOf(location), event.record);
+    if (KindOf(*event.record) == RecordKind::kThreadReceive)
+      text += WaitedText(trace, location, RecordAt<ThreadReceive>(event.record));
     return text.empty() ? TimingText(trace, trace.ProcessOf(location), event.record) : text;
   }
   const Region& region = trace.regions()[event.region];

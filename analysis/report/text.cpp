@@ -31,16 +31,22 @@ std::string Joined(const std::vector<std::string>& path) {
   return text;
 }
 
-std::string CellText(const Cell& cell) {
+/// Seconds have fixed decimals; of other values nobody knows how large or small they are.
+bool IsSeconds(const Column& column) { return column.name.ends_with("_s"); }
+
+std::string CellText(const Cell& cell, const Column& column) {
   return std::visit(Match{[](std::monostate) { return std::string("-"); },
                           [](std::int64_t v) { return fmt::format("{}", v); },
-                          [](double v) { return fmt::format("{:.6f}", v); },
+                          [&column](double v) {
+                            return IsSeconds(column) ? fmt::format("{:.6f}", v)
+                                                     : fmt::format("{:.6g}", v);
+                          },
                           [](const std::string& v) { return v; },
                           [](const std::vector<std::string>& v) { return Joined(v); }},
                     cell);
 }
 
-std::string CellCsv(const Cell& cell) {
+std::string CellCsv(const Cell& cell, const Column& column) {
   const auto quoted = [](const std::string& text) {
     if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
     std::string out = "\"";
@@ -51,12 +57,15 @@ std::string CellCsv(const Cell& cell) {
     out += '"';
     return out;
   };
-  return std::visit(
-      Match{[](std::monostate) { return std::string(); },
-            [](std::int64_t v) { return fmt::format("{}", v); },
-            [](double v) { return fmt::format("{:.9f}", v); }, quoted,
-            [&quoted](const std::vector<std::string>& v) { return quoted(Joined(v)); }},
-      cell);
+  return std::visit(Match{[](std::monostate) { return std::string(); },
+                          [](std::int64_t v) { return fmt::format("{}", v); },
+                          [&column](double v) {
+                            return IsSeconds(column) ? fmt::format("{:.9f}", v)
+                                                     : fmt::format("{}", v);
+                          },
+                          quoted,
+                          [&quoted](const std::vector<std::string>& v) { return quoted(Joined(v)); }},
+                    cell);
 }
 
 Json CellJson(const Cell& cell) {
@@ -96,7 +105,7 @@ std::string TableText(const Table& table) {
     lines.emplace_back();
     for (std::size_t c = 0; c < row.size(); ++c) {
       // Full names, with all parameters, are for programs: CSV and JSON have them.
-      const std::string text = CellText(row[c]);
+      const std::string text = CellText(row[c], table.columns[c]);
       lines.back().push_back(table.columns[c].name == "region" ? ShortName(text) : text);
     }
   }
@@ -125,10 +134,11 @@ std::string TableCsv(const Table& table) {
     if (column != 0) out += ',';
     out += field;
   };
-  for (std::size_t c = 0; c < table.columns.size(); ++c) add(c, CellCsv(table.columns[c].name));
+  for (std::size_t c = 0; c < table.columns.size(); ++c)
+    add(c, CellCsv(table.columns[c].name, table.columns[c]));
   out += '\n';
   for (const auto& row : table.rows) {
-    for (std::size_t c = 0; c < row.size(); ++c) add(c, CellCsv(row[c]));
+    for (std::size_t c = 0; c < row.size(); ++c) add(c, CellCsv(row[c], table.columns[c]));
     out += '\n';
   }
   return out;

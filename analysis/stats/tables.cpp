@@ -8,6 +8,8 @@
 
 #include "analysis/stats/analysis.h"
 #include "analysis/stats/callpaths.h"
+#include "analysis/stats/channels.h"
+#include "analysis/stats/counters.h"
 #include "analysis/stats/finding_of.h"
 #include "analysis/stats/message_matrix.h"
 #include "analysis/stats/profile.h"
@@ -116,6 +118,23 @@ TableAnswer Imbalance(const Analysis& analysis, const Selection& selection, bool
   return {std::move(table), f.sentence};
 }
 
+TableAnswer Counters(const Analysis& analysis, const Selection& selection, bool) {
+  Table table = CountersTable(analysis.trace, selection);
+  std::string headline = table.rows.empty()
+                             ? "No counter was recorded."
+                             : "What the program counted: each value holds until the next one.";
+  return {std::move(table), std::move(headline)};
+}
+
+TableAnswer Channels(const Analysis& analysis, const Selection& selection, bool) {
+  Table table = ChannelsTable(analysis, selection);
+  std::int64_t messages = 0;
+  for (const auto& row : table.rows) messages += std::get<std::int64_t>(row[2]);
+  std::string headline =
+      "Threads received " + std::to_string(messages) + " messages from each other.";
+  return {std::move(table), std::move(headline)};
+}
+
 constexpr std::array kTables = {
     TableEntry{"profile", Profile, "time and calls per region, most exclusive time first", true},
     TableEntry{"callpaths", CallPaths, "time, calls and messages per chain of calls, a tree"},
@@ -123,7 +142,9 @@ constexpr std::array kTables = {
     TableEntry{"messages", Messages, "how many messages each rank sent to each (sender = row)"},
     TableEntry{"volume", Volume, "how many bytes each rank sent to each (sender = row)"},
     TableEntry{"waits", Waits, "who waited for whom, why, and what the late rank was doing"},
-    TableEntry{"imbalance", Imbalance, "how unevenly the ranks compute, what it costs and why"}};
+    TableEntry{"imbalance", Imbalance, "how unevenly the ranks compute, what it costs and why"},
+    TableEntry{"counters", Counters, "values of the program's own counters over time"},
+    TableEntry{"channels", Channels, "messages between threads, and who waited for whom"}};
 
 }  // namespace
 

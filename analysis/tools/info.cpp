@@ -95,6 +95,8 @@ std::string InfoJson(const Analysis& info) {
                      {"lost", LostJson(info.health)},
                      {"messages", info.mpi.matched},
                      {"unmatched_messages", info.mpi.Unmatched()},
+                     {"thread_messages", info.mpi.thread_messages.matched.size()},
+                     {"unmatched_thread_messages", info.mpi.thread_messages.unmatched.size()},
                      {"span_s", Seconds(trace.SpanNs())},
                      {"paused_s", LongestPaused(trace).seconds},
                      {"paused_times", LongestPaused(trace).times},
@@ -133,6 +135,11 @@ std::string InfoText(const Analysis& info) {
                       FormatCount(static_cast<std::int64_t>(info.mpi.matched)),
                       FormatBytes(static_cast<double>(info.mpi.bytes)),
                       FormatCount(static_cast<std::int64_t>(info.mpi.Unmatched())));
+  if (const ThreadMessages& m = info.mpi.thread_messages;
+      m.matched.size() + m.unmatched.size() != 0)
+    text += fmt::format("           {} between threads matched, {} unmatched\n",
+                        FormatCount(m.matched.size(), "message"),
+                        FormatCount(static_cast<std::int64_t>(m.unmatched.size())));
   text += fmt::format("clock      {}\n", ClockText(info));
   if (const Paused paused = LongestPaused(trace); paused.times != 0)
     text += fmt::format("paused     {}, {}\n", FormatSeconds(paused.seconds),

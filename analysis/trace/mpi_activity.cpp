@@ -113,6 +113,7 @@ void TakeLocation(LocationActivity& from, MpiActivity& all, LocationActivity& pr
   Append(all.calls, from.calls);
   Append(all.marks, from.marks);
   Append(all.probes, from.probes);
+  Append(process.thread_messages, from.thread_messages);
   Append(process.sends, from.sends);
   Append(process.receives, from.receives);
   Append(process.posts, from.posts);
@@ -176,6 +177,7 @@ MpiActivity JoinActivity(const Trace& trace, std::vector<LocationActivity> locat
     JoinRequests(p);
     NumberCollectives(p.collectives);
     if (trace.kept()) NumberFromEnd(p.collectives);
+    MatchThreadMessages(std::move(p.thread_messages), a.thread_messages);
     Append(a.sends, p.sends);
     Append(a.receives, p.receives);
     Append(a.collectives, p.collectives);

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "analysis/trace/health.h"
+#include "analysis/trace/thread_messages.h"
 #include "analysis/trace/trace.h"
 
 namespace stipple {
@@ -93,6 +94,7 @@ struct MpiActivity {
   std::vector<ProbeEvent> probes;
   std::vector<CollectiveEvent> collectives;  // by communicator, number, rank
   std::vector<MarkEvent> marks;              // by location, then time
+  ThreadMessages thread_messages;            // with the same scan, too
   std::uint64_t matched = 0;
   std::uint64_t reversed = 0;  // messages that were complete before their send was entered
   std::uint64_t bytes = 0;     // sent
@@ -126,6 +128,7 @@ struct LocationActivity {
   std::vector<ProbeEvent> probes;
   std::vector<CollectiveEvent> collectives;
   std::vector<MarkEvent> marks;
+  std::vector<ThreadMessageEnd> thread_messages;
   std::uint64_t undefined_communicators = 0;
   std::uint64_t undefined_names = 0;
 };

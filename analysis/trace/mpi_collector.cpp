@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/trace/mpi_collector.h"
 
+#include <algorithm>
+#include <optional>
 #include <utility>
 
 namespace stipple {
@@ -26,13 +28,16 @@ void MpiCollector::Function(std::uint32_t region, bool leave, std::uint64_t tick
 }
 
 void MpiCollector::Record(const EventWord* record, std::uint64_t ticks) {
-  if (KindOf(*record) == RecordKind::kMark) return Marked(RecordAt<Mark>(record), ticks);
-  if (KindOf(*record) == RecordKind::kCounter) {
+  const RecordKind kind = KindOf(*record);
+  if (kind == RecordKind::kMark) return Marked(RecordAt<Mark>(record), ticks);
+  if (kind == RecordKind::kThreadSend) return Handed(RecordAt<ThreadSend>(record), ticks);
+  if (kind == RecordKind::kThreadReceive) return Taken(RecordAt<ThreadReceive>(record), ticks);
+  if (kind == RecordKind::kCounter) {
     out_.undefined_names += process_.NameOf(RecordAt<Counter>(record).name) == 0;
     return;
   }
   if (!process_.in_world) return;
-  switch (KindOf(*record)) {
+  switch (kind) {
     case RecordKind::kMpiSend:
       return Send(RecordAt<MpiSend>(record), ticks);
     case RecordKind::kMpiReceivePost: {
@@ -76,6 +81,27 @@ void MpiCollector::Marked(const Mark& r, std::uint64_t ticks) {
   out_.undefined_names += process_.NameOf(r.name) == 0;
   out_.marks.push_back({trace_.TimeNs(location_, ticks), process_.NameOf(r.name),
                         static_cast<std::uint32_t>(location_.index)});
+}
+
+void MpiCollector::Handed(const ThreadSend& r, std::uint64_t ticks) {
+  const std::uint32_t channel = process_.ChannelOf(r.channel);
+  out_.undefined_names += channel == 0;
+  out_.thread_messages.push_back({channel,
+                                  r.key,
+                                  false,
+                                  trace_.TimeNs(location_, ticks),
+                                  r.bytes,
+                                  static_cast<std::uint32_t>(location_.index),
+                                  {}});
+}
+
+void MpiCollector::Taken(const ThreadReceive& r, std::uint64_t ticks) {
+  const std::uint32_t channel = process_.ChannelOf(r.channel);
+  out_.undefined_names += channel == 0;
+  std::optional<std::int64_t> since_ns;
+  if (r.waiting_since != 0) since_ns = trace_.TimeNs(location_, std::min(r.waiting_since, ticks));
+  out_.thread_messages.push_back({channel, r.key, true, trace_.TimeNs(location_, ticks), r.bytes,
+                                  static_cast<std::uint32_t>(location_.index), since_ns});
 }
 
 void MpiCollector::Send(const MpiSend& r, std::uint64_t ticks) {

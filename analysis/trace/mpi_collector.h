@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Collects what one location did with MPI, from the events of its scan: MPI functions and records.
+// Marks and messages between threads come with them.
 #ifndef STIPPLE_ANALYSIS_TRACE_MPI_COLLECTOR_H
 #define STIPPLE_ANALYSIS_TRACE_MPI_COLLECTOR_H
 
@@ -27,6 +28,8 @@ class MpiCollector {
   const Communicator& At(std::uint32_t c) const { return trace_.communicators()[c]; }
   std::int64_t CallBegin(std::uint64_t ticks) const;
   void Marked(const Mark& r, std::uint64_t ticks);
+  void Handed(const ThreadSend& r, std::uint64_t ticks);
+  void Taken(const ThreadReceive& r, std::uint64_t ticks);
   void Send(const MpiSend& r, std::uint64_t ticks);
   void Receive(const MpiReceive& r, std::uint64_t ticks);
   void Collective(const MpiCollective& r, std::uint64_t ticks);

@@ -35,6 +35,10 @@ constexpr std::uint64_t BytesOf(RecordKind kind) {
       return sizeof(Unwound);
     case RecordKind::kStackSwitch:
       return sizeof(StackSwitch);
+    case RecordKind::kThreadSend:
+      return sizeof(ThreadSend);
+    case RecordKind::kThreadReceive:
+      return sizeof(ThreadReceive);
     case RecordKind::kRegionMode:
       return sizeof(RegionMode);
     case RecordKind::kCountedEnter:

@@ -88,6 +88,15 @@ struct DefinitionReader {
     return true;
   }
 
+  bool Channel(std::span<const EventWord> words) {
+    DefineChannel d;
+    if (!Get(words, d)) return false;
+    const auto text = Text<DefineChannel>(words, d.name_bytes);
+    if (!text || d.channel > stream.channels.size() * 16 + kNumberSlack) return false;
+    stream.channels.push_back({d.channel, *text});
+    return true;
+  }
+
   bool World(std::span<const EventWord> words) {
     DefineWorld d;
     if (!Get(words, d) || d.world_rank < 0 || d.world_rank >= d.world_size ||
@@ -219,6 +228,8 @@ struct DefinitionReader {
         return Location(words);
       case RecordKind::kDefineName:
         return Name(words);
+      case RecordKind::kDefineChannel:
+        return Channel(words);
       case RecordKind::kDefineWorld:
         return World(words);
       case RecordKind::kDefineCommunicator:

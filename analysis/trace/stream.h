@@ -80,6 +80,10 @@ struct NameDefinition {
   std::string_view text;
   std::string_view unit;
 };
+struct ChannelDefinition {
+  std::uint32_t channel = 0;
+  std::string_view name;
+};
 struct CommunicatorDefinition {
   std::uint32_t communicator = 0;
   std::uint32_t parent = 0;
@@ -135,6 +139,7 @@ struct Stream {
 
   std::vector<RegionDefinition> regions;
   std::vector<NameDefinition> names;
+  std::vector<ChannelDefinition> channels;
   std::vector<CommunicatorDefinition> communicators;
   std::vector<ClockSync> syncs;
   std::vector<AvailabilityDefinition> availability;

@@ -120,6 +120,18 @@ void UnifyNames(std::vector<Process>& processes, std::vector<Name>& names) {
   }
 }
 
+void UnifyChannels(std::vector<Process>& processes, std::vector<std::string>& channels) {
+  channels.emplace_back("(undefined channel)");
+  Unifier<std::string> unifier;
+  for (Process& p : processes) {
+    for (const ChannelDefinition& d : p.stream->channels) {
+      const auto [number, is_new] = unifier.NumberOf(std::string(d.name));
+      if (is_new) channels.emplace_back(d.name);
+      Assign(p.channels, d.channel, number);
+    }
+  }
+}
+
 void UnifyCommunicators(std::vector<Process>& processes, std::vector<Communicator>& communicators) {
   communicators.push_back({});
   Unifier<CommunicatorKey> unifier;
@@ -145,6 +157,7 @@ void UnifyCommunicators(std::vector<Process>& processes, std::vector<Communicato
 void Trace::UnifyDefinitions() {
   UnifyRegions(processes_, regions_);
   UnifyNames(processes_, names_);
+  UnifyChannels(processes_, channels_);
   UnifyCommunicators(processes_, communicators_);
 }
 

@@ -59,10 +59,12 @@ struct Process {
                       // stream's file
   std::vector<std::uint32_t> regions;        // of the process -> of the archive
   std::vector<std::uint32_t> names;          // likewise
+  std::vector<std::uint32_t> channels;       // likewise
   std::vector<std::uint32_t> communicators;  // likewise
 
   std::uint32_t RegionCount() const { return static_cast<std::uint32_t>(regions.size()); }
   std::uint32_t NameOf(std::uint32_t n) const { return n < names.size() ? names[n] : 0; }
+  std::uint32_t ChannelOf(std::uint32_t c) const { return c < channels.size() ? channels[c] : 0; }
   std::uint32_t CommunicatorOf(std::uint32_t c) const {
     return c < communicators.size() ? communicators[c] : 0;
   }
@@ -101,6 +103,8 @@ class Trace {
   const std::string& path() const { return path_; }
   const std::vector<Region>& regions() const { return regions_; }
   const std::vector<Name>& names() const { return names_; }
+  /// Names of what messages between threads go through; index 0 is the one that is not defined.
+  const std::vector<std::string>& channels() const { return channels_; }
   const std::vector<Communicator>& communicators() const { return communicators_; }
   const std::vector<Process>& processes() const { return processes_; }
   const std::vector<Location>& locations() const { return locations_; }
@@ -179,6 +183,7 @@ class Trace {
   std::vector<Location> locations_;
   std::vector<Region> regions_;
   std::vector<Name> names_;
+  std::vector<std::string> channels_;
   std::vector<Communicator> communicators_;
   Clocks clocks_;
   double zero_ns_ = 0;

@@ -8,7 +8,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-struct stipple_name;  // user.h
+// user.h
+struct stipple_channel;
+struct stipple_name;
+struct stipple_region;
 
 /// What a library that records beside the events wants to be told; null: nothing. Called in the
 /// thread that it is about, with signals blocked and no lock held. Events of such a call are lost.
@@ -74,6 +77,13 @@ bool stipple_observe(const struct stipple_observer* observer);
 void stipple_record_mark(struct stipple_name* name);
 void stipple_record_counter(struct stipple_name* name, double value);
 void stipple_record_host(void);
+void stipple_record_begin(struct stipple_region* region);
+void stipple_record_end(struct stipple_region* region);
+void stipple_record_send(struct stipple_channel* channel, uint64_t key, uint64_t bytes);
+void stipple_record_receive(struct stipple_channel* channel, uint64_t key, uint64_t bytes,
+                            uint64_t waiting_since);
+uint32_t stipple_define_name(const char* name, const char* unit);
+uint32_t stipple_define_channel(const char* name);
 void stipple_switch(int on);
 void stipple_switch_regions(const char* pattern, int on);
 }

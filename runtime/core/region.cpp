@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// One table for regions and one for names of marks. Entries stand in blocks that never move; an
-// open hash table over them doubles. An entry is complete before the count or the hash table shows
-// it, so a fork by another thread finds every table sound.
+// A table for regions, one for names of marks, one for channels. Entries stand in blocks that never
+// move; an open hash table over them doubles. An entry is complete before the count or the hash
+// table shows it, so a fork by another thread finds every table sound.
 #include "runtime/core/region.h"
 
 #include "runtime/core/address.h"
@@ -20,7 +20,8 @@ namespace {
 
 constinit Arena arena;
 
-/// What a number stands for. Regions: linkage name and source file; names: name and unit.
+/// What a number stands for. Regions: linkage name and source file; names: name and unit; channels:
+/// name.
 struct Entry {
   std::uint64_t hash;
   const char* name;
@@ -132,6 +133,7 @@ class Table {
 
 constinit Table<kMaxRegion> regions;
 constinit Table<65535> names;
+constinit Table<65535> channels;
 
 /// In place of a region: the function is filtered.
 constexpr std::uint32_t kFiltered = ~std::uint32_t{0};
@@ -228,6 +230,15 @@ bool DefineNameRecord(Process& process, std::uint32_t id) {
                 entry.detail, entry.detail_bytes);
 }
 
+bool DefineChannelRecord(Process& process, std::uint32_t id) {
+  const Entry& entry = channels[id];
+  DefineChannel record{};
+  record.channel = id;
+  record.name_bytes = entry.name_bytes;
+  return Define(process, &record, DefineChannel::kKind, sizeof record, entry.name,
+                entry.name_bytes);
+}
+
 /// Says in the archive, once, that some functions have no id.
 void NoteNoRegionsLeft(Process& process) {
   if (process.said_regions != 0) return;
@@ -317,6 +328,8 @@ void DefineAll(Process& process) {
     if (!DefineRegionRecord(process, id)) return;
   for (std::uint32_t id = 1; id <= names.count(); ++id)
     if (!DefineNameRecord(process, id)) return;
+  for (std::uint32_t id = 1; id <= channels.count(); ++id)
+    if (!DefineChannelRecord(process, id)) return;
 }
 
 void SilenceAll() {
@@ -389,6 +402,14 @@ std::uint32_t NameId(Process& process, const char* name, const char* unit) {
   if (id != 0) return id;
   id = names.Add(entry);
   return id != 0 && DefineNameRecord(process, id) ? id : 0;
+}
+
+std::uint32_t ChannelId(Process& process, const char* name) {
+  const Entry entry = MakeEntry(name, nullptr, 0, RegionKind::kUser);
+  std::uint32_t id = channels.Find(entry);
+  if (id != 0) return id;
+  id = channels.Add(entry);
+  return id != 0 && DefineChannelRecord(process, id) ? id : 0;
 }
 
 }  // namespace stipple

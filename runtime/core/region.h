@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Names that got a number: regions, and the names of marks and counters. They outlive the objects
+// Names that got a number: regions, channels, and the names of marks and counters. They outlive the objects
 // that brought them, and a fork: a child's stream defines them again under the same numbers.
 #ifndef STIPPLE_RUNTIME_CORE_REGION_H
 #define STIPPLE_RUNTIME_CORE_REGION_H
@@ -12,7 +12,7 @@
 
 namespace stipple {
 
-/// Writes the definition of every module, region and name there is. The lock is held.
+/// Writes the definition of every module, region, name and channel there is. The lock is held.
 void DefineAll(Process& process);
 
 /// Sets the id slots of every registered object to 0: no more events. The lock is held.
@@ -50,6 +50,9 @@ std::uint32_t LastRegion();
 
 /// The id of a mark's or counter's name; 0 if it cannot be recorded. The lock is held.
 std::uint32_t NameId(Process& process, const char* name, const char* unit);
+
+/// The id of a channel; 0 if it cannot be recorded. The lock is held.
+std::uint32_t ChannelId(Process& process, const char* name);
 
 }  // namespace stipple
 

@@ -195,6 +195,34 @@ struct Counter {
 };
 static_assert(sizeof(Counter) == 32);
 
+// Messages between threads of one process (user.h). On one channel with one key the first that was
+// sent is the first that is received.
+
+/// This thread is about to hand a message to another one.
+struct ThreadSend {
+  static constexpr RecordKind kKind = RecordKind::kThreadSend;
+  EventWord header;
+  std::uint64_t ticks;
+  std::uint64_t bytes;
+  std::uint64_t key;      // the program's own
+  std::uint32_t channel;  // DefineChannel
+  std::uint32_t reserved;
+};
+static_assert(sizeof(ThreadSend) == 40);
+
+/// This thread has taken a message.
+struct ThreadReceive {
+  static constexpr RecordKind kKind = RecordKind::kThreadReceive;
+  EventWord header;
+  std::uint64_t ticks;
+  std::uint64_t bytes;
+  std::uint64_t key;
+  std::uint64_t waiting_since;  // ticks when the thread began to look for it; 0: not told
+  std::uint32_t channel;        // DefineChannel
+  std::uint32_t reserved;
+};
+static_assert(sizeof(ThreadReceive) == 48);
+
 /// A message was handed to MPI on this location, before the call went on. None for MPI_PROC_NULL.
 struct MpiSend {
   static constexpr RecordKind kKind = RecordKind::kMpiSend;
@@ -517,6 +545,15 @@ struct DefineName {
   std::uint32_t reserved;
 };
 static_assert(sizeof(DefineName) == 24);
+
+/// What messages between threads go through.
+struct DefineChannel {
+  static constexpr RecordKind kKind = RecordKind::kDefineChannel;
+  EventWord header;
+  std::uint32_t channel;
+  std::uint32_t name_bytes;
+};
+static_assert(sizeof(DefineChannel) == 16);
 
 /// This process is a rank of an MPI program.
 struct DefineWorld {
