@@ -66,9 +66,14 @@ RecordStep StepRecord(const EventWord* word, const Chunk& chunk, std::uint64_t n
     ++counts.open_records;
     return {words, false, now};
   }
-  ++counts.records;
   const bool has_time = words > 1 && KindOf(*word) < RecordKind::kDefineRegion;
-  return {words, true, has_time ? std::max(now, std::min(word[1], limit)) : now};
+  RecordStep step{words, true, has_time ? std::max(now, std::min(word[1], limit)) : now};
+  step.enters = KindOf(*word) == RecordKind::kCountedEnter;
+  if (step.enters)
+    step.region = RecordAt<CountedEnter>(word).region;
+  else
+    ++counts.records;  // the others are counted as function events
+  return step;
 }
 
 UnclockedRun MeasureUnclocked(const EventWord* word, const EventWord* end, std::uint64_t now,
@@ -86,6 +91,8 @@ UnclockedRun MeasureUnclocked(const EventWord* word, const EventWord* end, std::
     }
     if (*word != 0) ++run.events;
   }
+  run.begin = now;
+  run.end = next;
   run.step = (next - now) / (run.events + 1);
   return run;
 }
