@@ -70,6 +70,23 @@ std::string StableText(const Trace& trace, const Process& p, const EventWord* re
   }
 }
 
+constexpr const char* NameOf(RegionModeKind mode) {
+  switch (mode) {
+    case RegionModeKind::kTimed:
+      return "timed";
+    case RegionModeKind::kNoClock:
+      return "without times";
+    case RegionModeKind::kCounted:
+      return "counted";
+  }
+  return "in an unknown mode";
+}
+
+std::string ModeText(const Trace& trace, const Process& p, const RegionMode& r) {
+  return fmt::format("from here on {} is {}: {} visits until now",
+                     RegionOfProcess(trace, p, r.region).name, NameOf(r.mode), r.visits);
+}
+
 /// Records that depend on timing.
 std::string TimingText(const Trace& trace, const Process& p, const EventWord* record) {
   switch (KindOf(*record)) {
@@ -101,6 +118,8 @@ std::string TimingText(const Trace& trace, const Process& p, const EventWord* re
       const auto r = RecordAt<ClockStep>(record);
       return fmt::format("clock step, from {} to {} ticks", r.before_ticks, r.ticks);
     }
+    case RecordKind::kRegionMode:
+      return ModeText(trace, p, RecordAt<RegionMode>(record));
     default:
       return fmt::format("record of kind {}", static_cast<unsigned>(KindOf(*record)));
   }
@@ -133,6 +152,12 @@ std::string EventText(const Trace& trace, const Location& location, const Event&
   std::string text = CanonicalText(trace, location, event);
   if (!event.leave && !region.file.empty())
     text += fmt::format("  {}:{}", region.file, region.line);
+  if (event.counted != nullptr) {
+    const auto r = RecordAt<CountedEnter>(event.counted);
+    text += r.purpose == CountedPurpose::kSample
+                ? fmt::format("  (a sample; {} visits since the last one left no event)", r.visits)
+                : "  (inside a sample)";
+  }
   return text;
 }
 

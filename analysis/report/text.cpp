@@ -17,6 +17,23 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// Doubts below this part of a time are not shown in text.
+constexpr double kNegligible = 0.005;
+
+double NumberOf(const Cell& cell) {
+  const double* number = std::get_if<double>(&cell);
+  return number == nullptr ? 0 : *number;
+}
+template <class Values>
+void EraseAt(Values& values, std::size_t at, std::size_t count) {
+  const auto first = values.begin() + static_cast<std::ptrdiff_t>(at);
+  values.erase(first, first + static_cast<std::ptrdiff_t>(count));
+}
+template <class Values, class Value>
+void InsertAt(Values& values, std::size_t at, Value value) {
+  values.insert(values.begin() + static_cast<std::ptrdiff_t>(at), std::move(value));
+}
+
 template <class... Cases>
 struct Match : Cases... {
   using Cases::operator()...;
@@ -94,10 +111,50 @@ Json MatrixJson(const Table& table) {
   return {{"rows", rows}, {"columns", columns}, {"values", values}};
 }
 
+/// What is doubtful about a time in text: nothing where it is negligible.
+std::string DoubtText(double value, double low, double high, double total) {
+  const double doubt = std::max(high - value, value - low);
+  if (!(doubt > kNegligible * value) || !(doubt > kNegligible / 10 * total)) return {};
+  return fmt::format("+-{:.6f}", doubt);
+}
+
+/// People read a doubt behind a time, and only where it matters: columns X_low_s and X_high_s
+/// become one behind X_s, or none.
+Table WithDoubts(Table table) {
+  const auto column = [&table](const std::string& name) {
+    const auto found = std::ranges::find(table.columns, name, &Column::name);
+    return static_cast<std::size_t>(found - table.columns.begin());
+  };
+  for (const std::string time : {"exclusive", "inclusive"}) {
+    const std::size_t value = column(time + "_s");
+    const std::size_t low = column(time + "_low_s");
+    if (low + 1 >= table.columns.size()) continue;
+    double total = 0;
+    for (const auto& row : table.rows) total += NumberOf(row[value]);
+    bool any = false;
+    std::vector<std::string> doubts;
+    for (auto& row : table.rows) {
+      doubts.push_back(
+          std::holds_alternative<std::monostate>(row[low])
+              ? std::string()
+              : DoubtText(NumberOf(row[value]), NumberOf(row[low]), NumberOf(row[low + 1]), total));
+      any = any || !doubts.back().empty();
+      EraseAt(row, low, 2);
+    }
+    EraseAt(table.columns, low, 2);
+    if (!any) continue;
+    InsertAt(table.columns, value + 1, Column{""});
+    for (std::size_t r = 0; r < table.rows.size(); ++r)
+      InsertAt(table.rows[r], value + 1, Cell(doubts[r]));
+  }
+  return table;
+}
+
 }  // namespace
 
-std::string TableText(const Table& table) {
-  if (table.shape == TableShape::kTree) return TreeText(table);
+std::string TableText(const Table& full) {
+  if (full.shape == TableShape::kTree) return TreeText(full);
+  const Table table = WithDoubts(full);
   std::vector<std::size_t> widths;
   std::vector<std::vector<std::string>> lines(1);
   for (const Column& c : table.columns) lines.front().push_back(c.name);

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/stats/analysis.h"
 
+#include <algorithm>
 #include <utility>
 
+#include "analysis/stats/estimate.h"
 #include "analysis/stats/profile.h"
 #include "analysis/stats/profile_visitor.h"
 
@@ -10,22 +12,40 @@ namespace stipple {
 
 Analysis::Analysis(const Trace& of) : trace(of), profiles(of.locations().size()) {
   std::vector<LocationActivity> activities(profiles.size());
+  std::vector<std::vector<BudgetStep>> steps_of(profiles.size());
   std::vector<std::uint64_t> leaves_without_enter(profiles.size());
   std::vector<std::uint64_t> enters_without_leave(profiles.size());
   trace.ForEachLocation("reading", [&](const Location& l) {
     const Process& process = trace.ProcessOf(l);
     MpiCollector collector(trace, l);
-    ProfileVisitor visitor(process.RegionCount(), trace.kept() ? l.first_ticks : 0,
-                           kNoTickLimit, &collector);
-    trace.Scan(l, visitor);
-    visitor.Finish(l.last_ticks);
-    profiles[l.index] = ProfileFrom(trace, l, visitor, true);
+    const auto keep_unmatched = [&](const auto& visitor) {
+      enters_without_leave[l.index] = visitor.enters_without_leave();
+      // A forked child leaves the functions that its parent had entered.
+      if (process.stream->header.forked == 0)
+        leaves_without_enter[l.index] = visitor.leaves_without_enter();
+    };
+    if (HasBudget(process)) {
+      EstimateVisitor visitor(process.RegionCount(), l.first_ticks, kNoTickLimit,
+                              EventPrices::Of(*process.stream), false, &collector);
+      trace.Scan(l, visitor);
+      visitor.Finish(l.last_ticks, process.stream->visit_counts, l.stream->thread);
+      LocationEstimate estimate = EstimateFrom(trace, l, visitor);
+      profiles[l.index] = std::move(estimate.profile);
+      steps_of[l.index] = std::move(estimate.steps);
+      keep_unmatched(visitor);
+    } else {
+      ProfileVisitor visitor(process.RegionCount(), trace.kept() ? l.first_ticks : 0, kNoTickLimit,
+                             &collector);
+      trace.Scan(l, visitor);
+      visitor.Finish(l.last_ticks);
+      profiles[l.index] = ProfileFrom(trace, l, visitor);
+      keep_unmatched(visitor);
+    }
     activities[l.index] = collector.Finish();
-    enters_without_leave[l.index] = visitor.enters_without_leave();
-    // A forked child leaves the functions that its parent had entered.
-    if (process.stream->header.forked == 0)
-      leaves_without_enter[l.index] = visitor.leaves_without_enter();
   });
+  for (const std::vector<BudgetStep>& some : steps_of)
+    steps.insert(steps.end(), some.begin(), some.end());
+  std::ranges::stable_sort(steps, {}, &BudgetStep::time_ns);
   mpi = JoinActivity(trace, std::move(activities));
   waits = FindWaits(trace, mpi);
   health = trace.Health();

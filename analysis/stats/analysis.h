@@ -3,6 +3,7 @@
 #ifndef STIPPLE_ANALYSIS_STATS_ANALYSIS_H
 #define STIPPLE_ANALYSIS_STATS_ANALYSIS_H
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -13,14 +14,57 @@
 
 namespace stipple {
 
+/// What a time lies between; both ends are the time itself where it is exact.
+struct Bounds {
+  double low = 0;
+  double high = 0;
+  Bounds& operator+=(const Bounds& o) {
+    low += o.low;
+    high += o.high;
+    return *this;
+  }
+};
+
 /// Visits of one region. Inclusive time counts nested visits of the same region once.
 struct RegionTime {
   std::uint32_t region = 0;  // of the archive
   std::uint64_t calls = 0;   // entered in the selected span
   double inclusive_ns = 0;
   double exclusive_ns = 0;
+  Bounds inclusive_bounds_ns;  // not a number: not known (sparse)
+  Bounds exclusive_bounds_ns;
+
+  RegionTime& operator+=(const RegionTime& o) {
+    calls += o.calls;
+    inclusive_ns += o.inclusive_ns;
+    exclusive_ns += o.exclusive_ns;
+    inclusive_bounds_ns += o.inclusive_bounds_ns;
+    exclusive_bounds_ns += o.exclusive_bounds_ns;
+    return *this;
+  }
 };
 using LocationProfile = std::vector<RegionTime>;
+
+/// What recording one region cost. Times lie in the region itself, as exclusive time does; measured
+/// less cost is corrected.
+struct RegionOverhead {
+  std::uint32_t region = 0;   // of the archive
+  std::uint64_t events = 0;   // that were written
+  std::uint64_t counted = 0;  // visits that were counted or had no time
+  double measured_ns = 0;
+  double cost_ns = 0;
+  double residual_ns = 0;  // how far from the truth measured less cost may be
+};
+
+/// The budget changed a region's mode.
+struct BudgetStep {
+  std::int64_t time_ns = 0;
+  std::size_t location = 0;
+  std::uint32_t region = 0;  // of the archive
+  RegionModeKind mode = RegionModeKind::kTimed;
+  std::uint64_t visits = 0;
+  double mean_ns = 0;
+};
 
 struct Analysis {
   explicit Analysis(const Trace& of);
@@ -28,8 +72,9 @@ struct Analysis {
   const Trace& trace;
   std::vector<LocationProfile> profiles;  // by location, of the whole time
   MpiActivity mpi;
-  std::vector<CallWait> waits;  // by call of mpi
-  TraceHealth health;           // all that is wrong with the archive
+  std::vector<CallWait> waits;    // by call of mpi
+  std::vector<BudgetStep> steps;  // in order of time
+  TraceHealth health;             // all that is wrong with the archive
 };
 
 }  // namespace stipple

@@ -2,10 +2,13 @@
 #include "analysis/stats/profile.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <tuple>
 #include <utility>
 
+#include "analysis/stats/estimate.h"
 #include "analysis/stats/profile_visitor.h"
 
 namespace stipple {
@@ -14,11 +17,7 @@ namespace {
 double Seconds(double ns) { return ns * 1e-9; }
 
 void AddTo(std::vector<RegionTime>& sums, const LocationProfile& profile) {
-  for (const RegionTime& t : profile) {
-    sums[t.region].calls += t.calls;
-    sums[t.region].inclusive_ns += t.inclusive_ns;
-    sums[t.region].exclusive_ns += t.exclusive_ns;
-  }
+  for (const RegionTime& t : profile) sums[t.region] += t;
 }
 
 /// By location; empty for ranks that are not selected.
@@ -37,26 +36,34 @@ std::vector<LocationProfile> ProfilesOf(const Analysis& analysis, const Selectio
 }  // namespace
 
 LocationProfile ProfileFrom(const Trace& trace, const Location& location,
-                            const ProfileVisitor& visitor, bool whole_time) {
+                            const ProfileVisitor& visitor) {
   const Process& process = trace.ProcessOf(location);
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   const double ns_per_tick = trace.NsPerTick(location);
   LocationProfile profile;
   for (std::size_t r = 0; r < visitor.regions().size(); ++r) {
     const RegionTicks& ticks = visitor.regions()[r];
     if (ticks.calls == 0 && ticks.inclusive == 0 && ticks.exclusive == 0) continue;
-    profile.push_back({process.regions[r], ticks.calls,
-                       static_cast<double>(ticks.inclusive) * ns_per_tick,
-                       static_cast<double>(ticks.exclusive) * ns_per_tick});
+    const double inclusive = static_cast<double>(ticks.inclusive) * ns_per_tick;
+    const double exclusive = static_cast<double>(ticks.exclusive) * ns_per_tick;
+    Bounds inclusive_bounds{inclusive, inclusive};
+    Bounds exclusive_bounds{exclusive, exclusive};
+    if (!visitor.slacks().empty()) {
+      const RegionSlack& slack = visitor.slacks()[r];
+      const double sure =
+          std::max(0.0, exclusive - static_cast<double>(slack.guessed) * ns_per_tick);
+      exclusive_bounds = {sure, sure + static_cast<double>(slack.possible) * ns_per_tick};
+      inclusive_bounds = {kUnknown, kUnknown};
+    }
+    profile.push_back({process.regions[r], ticks.calls, inclusive, exclusive, inclusive_bounds,
+                       exclusive_bounds});
   }
-  // Visits that were only counted, without events.
-  if (whole_time && location.thread == 0)
-    for (const auto& [region, visits] : process.stream->visit_counts)
-      if (region < process.regions.size()) profile.push_back({process.regions[region], visits});
   return profile;
 }
 
 LocationProfile ProfileOf(const Trace& trace, const Location& location,
                           const Selection& selection) {
+  if (HasBudget(trace.ProcessOf(location))) return EstimateOf(trace, location, selection).profile;
   const bool whole = selection.WholeTime();
   ProfileVisitor visitor(trace.ProcessOf(location).RegionCount(),
                          whole ? 0
@@ -65,7 +72,7 @@ LocationProfile ProfileOf(const Trace& trace, const Location& location,
                          whole ? kNoTickLimit : trace.TicksAt(location, selection.end_ns), nullptr);
   trace.Scan(location, visitor);
   visitor.Finish(location.last_ticks);
-  return ProfileFrom(trace, location, visitor, whole);
+  return ProfileFrom(trace, location, visitor);
 }
 
 std::vector<RegionTime> SumOfMains(const Analysis& analysis, const Selection& selection) {
@@ -89,7 +96,9 @@ Table ProfileTable(const Analysis& analysis, const Selection& selection, bool pe
   }
   Table table{"profile", TableShape::kRows, {}, {}};
   if (per_rank) table.columns.push_back({"rank"});
-  for (const char* name : {"region", "file", "line", "calls", "inclusive_s", "exclusive_s"})
+  for (const char* name :
+       {"region", "file", "line", "calls", "inclusive_s", "exclusive_s", "exclusive_low_s",
+        "exclusive_high_s", "inclusive_low_s", "inclusive_high_s"})
     table.columns.push_back({name});
   std::vector<std::tuple<double, int, std::size_t>> order;  // most exclusive time first
   for (const auto& [rank, times] : by_rank)
@@ -102,7 +111,10 @@ Table ProfileTable(const Analysis& analysis, const Selection& selection, bool pe
     const RegionTime& time = by_rank[rank][r];
     std::vector<Cell> row = RowOf(region.name, region.file, std::int64_t{region.line},
                                   static_cast<std::int64_t>(time.calls), Seconds(time.inclusive_ns),
-                                  Seconds(time.exclusive_ns));
+                                  Seconds(time.exclusive_ns), Seconds(time.exclusive_bounds_ns.low),
+                                  Seconds(time.exclusive_bounds_ns.high));
+    for (const double end : {time.inclusive_bounds_ns.low, time.inclusive_bounds_ns.high})
+      row.push_back(std::isnan(end) ? Cell() : Cell(Seconds(end)));
     if (per_rank) row.insert(row.begin(), std::int64_t{rank});
     table.rows.push_back(std::move(row));
   }

@@ -2,6 +2,8 @@
 // What is rare: jumps, contexts, frames left unseen.
 #include "analysis/stats/profile_visitor.h"
 
+#include <utility>
+
 namespace stipple {
 
 /// Ends the frame on top, which has no leave of its own.
@@ -17,6 +19,51 @@ ProfileVisitor::Hot ProfileVisitor::Repair(Hot hot, const RegionTicks* region,
                                            std::uint64_t ticks) {
   for (; hot.top->region != region; ++enters_without_leave_) PopLeft(hot, ticks);
   return hot;
+}
+
+/// Looks ahead into a run of events without a clock: a region that has all its gaps has all of its
+/// time; one that has some may have any part of it.
+void ProfileVisitor::Guess(const Hot& hot, const EventWord* first, const UnclockedRun& run) {
+  const auto in_span = [&hot](std::uint64_t ticks) {
+    return std::clamp(ticks, hot.begin, hot.end);
+  };
+  const std::uint64_t span = in_span(run.end) - in_span(run.begin);
+  if (span == 0) return;
+  slacks_.resize(regions_.size());
+  ++runs_;
+  guessed_stack_.clear();
+  guessed_regions_.clear();
+  const Frame* below = hot.top;
+  std::uint64_t begin = run.begin;
+  for (std::uint64_t gap = 0; gap <= run.events; ++gap) {
+    const std::uint32_t region = guessed_stack_.empty()
+                                     ? static_cast<std::uint32_t>(below->region - regions_.data())
+                                     : guessed_stack_.back();
+    RegionSlack& slack = slacks_[region];
+    if (std::exchange(slack.run, runs_) != runs_) {
+      slack.in_run = 0;
+      guessed_regions_.push_back(region);
+    }
+    const std::uint64_t end = gap == run.events ? run.end : begin + run.step;
+    slack.in_run += in_span(end) - in_span(begin);
+    begin = end;
+    if (gap == run.events) break;
+    while (*first == 0) ++first;  // never committed
+    const EventWord word = *first++;
+    if (!IsLeave(word)) {
+      const auto entered = static_cast<std::uint32_t>(RegionOf(word));
+      guessed_stack_.push_back(entered + 1 < regions_.size() ? entered : 0);
+    } else if (!guessed_stack_.empty()) {
+      guessed_stack_.pop_back();
+    } else if (below != stack_.data()) {
+      --below;
+    }
+  }
+  if (guessed_regions_.size() == 1) return;
+  for (const std::uint32_t region : guessed_regions_) {
+    slacks_[region].guessed += slacks_[region].in_run;
+    slacks_[region].possible += span;
+  }
 }
 
 ProfileVisitor::Hot ProfileVisitor::Jump(Hot hot, const EventWord* record, std::uint64_t ticks) {

@@ -25,6 +25,14 @@ struct RegionTicks {
   std::uint32_t is_watched = 0;  // its events go to the collector, too
 };
 
+/// What is not sure about a region's exclusive time, as some events have no clock; ticks.
+struct RegionSlack {
+  std::uint64_t guessed = 0;   // of it: what only an estimate gave to this region
+  std::uint64_t possible = 0;  // that which those estimates divided
+  std::uint64_t run = 0;       // the last one that it had a part of
+  std::uint64_t in_run = 0;    // of that run
+};
+
 struct Frame {
   RegionTicks* region;
   std::uint64_t enter;  // of the visit
@@ -72,6 +80,7 @@ class ProfileVisitor {
         ++owner->leaves_without_enter_;
       }
     }
+    void Run(const EventWord* first, const UnclockedRun& run) { owner->Guess(*this, first, run); }
     void Record(const EventWord* record, std::uint64_t ticks) {
       if (IsJump(KindOf(*record))) *this = owner->Jump(*this, record, ticks);
       if (owner->collector_ != nullptr) owner->collector_->Record(record, ticks);
@@ -109,6 +118,8 @@ class ProfileVisitor {
   }
   /// By region of the process.
   std::span<const RegionTicks> regions() const { return {regions_.data(), regions_.size() - 1}; }
+  /// Of regions(); empty if each event had a clock.
+  std::span<const RegionSlack> slacks() const { return slacks_; }
   /// None if the rest of a ring began with frames that are not known.
   std::uint64_t leaves_without_enter() const {
     return begin_is_known_ ? leaves_without_enter_ : 0;
@@ -125,6 +136,7 @@ class ProfileVisitor {
   // By value: a hot part whose address is known elsewhere would not stay in registers.
   Hot Repair(Hot hot, const RegionTicks* region, std::uint64_t ticks);
   Hot Jump(Hot hot, const EventWord* record, std::uint64_t ticks);
+  void Guess(const Hot& hot, const EventWord* first, const UnclockedRun& run);
   void SwitchContext(Hot& hot, std::uint32_t from, std::uint32_t to);
   void BeginOpen(Hot& hot, const EventWord* record, std::uint64_t ticks);
   void PopLeft(Hot& hot, std::uint64_t ticks);
@@ -138,6 +150,10 @@ class ProfileVisitor {
 
   std::vector<RegionTicks> regions_;
   std::vector<Frame> stack_;
+  std::vector<RegionSlack> slacks_;
+  std::uint64_t runs_ = 0;
+  std::vector<std::uint32_t> guessed_stack_;  // of Guess: what it enters
+  std::vector<std::uint32_t> guessed_regions_;
   MpiCollector* collector_;
   std::uint64_t leaves_without_enter_ = 0;
   std::uint64_t enters_without_leave_ = 0;

@@ -12,6 +12,7 @@
 #include "analysis/stats/counters.h"
 #include "analysis/stats/finding_of.h"
 #include "analysis/stats/message_matrix.h"
+#include "analysis/stats/overhead.h"
 #include "analysis/stats/profile.h"
 #include "analysis/stats/states.h"
 #include "analysis/trace/demangle.h"
@@ -55,12 +56,18 @@ TableAnswer Profile(const Analysis& analysis, const Selection& selection, bool p
   const auto& rows = answer.table.rows;
   if (rows.empty()) return per_rank ? answer : SampledProfile(analysis, selection);
   double sum = 0;
-  for (const auto& row : rows) sum += std::get<double>(row.back());
+  const std::size_t shift = per_rank ? 1 : 0;
+  const std::size_t exclusive = 5 + shift;
+  for (const auto& row : rows) sum += std::get<double>(row[exclusive]);
   const auto& first = rows.front();
-  const std::string& region = std::get<std::string>(first[per_rank ? 1 : 0]);
-  answer.headline = PercentText(std::get<double>(first.back()), sum) + " of the time is spent in " +
-                    ShortName(region) + " itself.";
+  const std::string& region = std::get<std::string>(first[shift]);
+  answer.headline = PercentText(std::get<double>(first[exclusive]), sum) +
+                    " of the time is spent in " + ShortName(region) + " itself.";
   return answer;
+}
+
+TableAnswer Overhead(const Analysis& analysis, const Selection& selection, bool) {
+  return OverheadTable(analysis, selection);
 }
 
 TableAnswer States(const Analysis& analysis, const Selection& selection, bool) {
@@ -144,7 +151,8 @@ constexpr std::array kTables = {
     TableEntry{"waits", Waits, "who waited for whom, why, and what the late rank was doing"},
     TableEntry{"imbalance", Imbalance, "how unevenly the ranks compute, what it costs and why"},
     TableEntry{"counters", Counters, "values of the program's own counters over time"},
-    TableEntry{"channels", Channels, "messages between threads, and who waited for whom"}};
+    TableEntry{"channels", Channels, "messages between threads, and who waited for whom"},
+    TableEntry{"overhead", Overhead, "what recording each region cost, and time without it"}};
 
 }  // namespace
 

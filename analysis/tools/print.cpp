@@ -112,6 +112,11 @@ void PrintOne(const Trace& trace, const Selection& selection, Reader& r, Output&
     text += JumpText(trace, r.stack, context, left);
   else if (left != 0)
     text += fmt::format("  ({} left unseen)", left);
+  if (r.event->earliest != r.event->latest) {
+    const auto before = r.time_ns - trace.TimeNs(r.cursor.location(), r.event->earliest);
+    const auto after = trace.TimeNs(r.cursor.location(), r.event->latest) - r.time_ns;
+    text += fmt::format("  (time -{} +{} ns)", before, after);
+  }
   const std::size_t depth = r.stack.depth() - (enter ? 1 : 0);
   out.Line("{:>4}.{:09} {:>7}  {:{}}{}", r.time_ns / 1'000'000'000, r.time_ns % 1'000'000'000,
            r.name, "", 2 * std::min<std::size_t>(depth, 64), text);

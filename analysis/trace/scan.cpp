@@ -129,10 +129,15 @@ RecordStep StepRecord(const EventWord* word, const Chunk& chunk, std::uint64_t n
     return {words, false, now};
   }
   if (KindOf(*word) == RecordKind::kOpenFrames) return {words, true, std::max(now, chunk.ticks)};
-  ++counts.records;
+  RecordStep step{words, true, has_time ? std::max(now, std::min(word[1], limit)) : now};
+  step.enters = KindOf(*word) == RecordKind::kCountedEnter;
+  if (step.enters)
+    step.region = RecordAt<CountedEnter>(word).region;
+  else
+    ++counts.records;  // the others are counted as function events
   if (KindOf(*word) == RecordKind::kClockStep && counts.clock_steps++ == 0)
     counts.first_step_ticks = now;
-  return {words, true, has_time ? std::max(now, std::min(word[1], limit)) : now};
+  return step;
 }
 
 UnclockedRun MeasureUnclocked(const EventWord* word, const EventWord* end, std::uint64_t now,
@@ -150,6 +155,8 @@ UnclockedRun MeasureUnclocked(const EventWord* word, const EventWord* end, std::
     }
     if (*word != 0) ++run.events;
   }
+  run.begin = now;
+  run.end = next;
   run.step = (next - now) / (run.events + 1);
   return run;
 }

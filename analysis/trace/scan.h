@@ -7,7 +7,7 @@
 // predecessor: a step back of less than 2^36 ticks is taken as such and the event gets the
 // predecessor's time, so that no duration is ever negative. No event is later than the begin of the
 // thread's next chunk. An event whose clock was not read lies between its clocked neighbours, in
-// equal steps.
+// equal steps: an estimate; the neighbours are its bounds.
 //
 // The loop touches each word once and keeps its state in registers: about 2 ns an event. Whatever
 // is rare (records, unclocked runs, damage) is out of line.
@@ -83,15 +83,20 @@ struct RecordStep {
   std::uint64_t words = 0;
   bool sound = false;
   std::uint64_t now = 0;
+  bool enters = false;  // the record enters `region`, as an event would
+  std::uint32_t region = 0;
 };
 RecordStep StepRecord(const EventWord* word, const Chunk& chunk, std::uint64_t now,
                       std::uint64_t limit, ScanCounts& counts);
 
-/// The unclocked run that begins at `word`: how many, and the step between them.
+/// A run of events without a clock, between two moments that are known.
 struct UnclockedRun {
   std::uint64_t events = 0;
-  std::uint64_t step = 0;
+  std::uint64_t step = 0;  // between them, as estimated
+  std::uint64_t begin = 0;
+  std::uint64_t end = 0;
 };
+/// That which begins at `word`.
 UnclockedRun MeasureUnclocked(const EventWord* word, const EventWord* end, std::uint64_t now,
                               std::uint64_t limit);
 
@@ -124,10 +129,29 @@ auto HotPartOf(Visitor& visitor) {
   return visitor.Begin();
 }
 
+/// A visitor may be told of a run of events without a clock, before the first of them.
+template <class Visitor>
+concept HasRuns = requires(Visitor& visitor, const EventWord* word, const UnclockedRun& run) {
+  visitor.Run(word, run);
+};
+/// A visitor may want to know which events had no clock: they come here and not to Function.
+template <class Visitor>
+concept HasUnclocked = requires(Visitor& visitor) {
+  visitor.Unclocked(0U, false, 0U);
+};
+
+/// A visitor may want to know which enters are records (CountedEnter): they come here and not to
+/// Function.
+template <class Visitor>
+concept HasCounted = requires(Visitor& visitor, const EventWord* record) {
+  visitor.Counted(record, 0U, 0U);
+};
+
 /// Scans at least `budget` words from `at` (fewer at the end of a chunk), within one chunk. The
 /// visitor has
 ///   void Function(std::uint32_t region, bool leave, std::uint64_t ticks)   region < region_count
 ///   void Record(const EventWord* record, std::uint64_t ticks)
+/// A record that enters a region (CountedEnter) comes as a function event.
 /// Regions are the process's numbers; one that is not below region_count comes as 0.
 /// Returns false when there is no chunk left.
 template <class Visitor>
@@ -146,22 +170,35 @@ bool ScanSome(const ThreadStream& thread, std::uint32_t region_count, std::uint6
   std::uint64_t unclocked = at.unclocked;
   std::uint64_t function_events = 0;
   decltype(auto) hot = HotPartOf(visitor);
+  const auto known = [&counts, region_count](std::uint32_t region) -> std::uint32_t {
+    if (region != 0 && region < region_count) [[likely]]
+      return region;
+    ++counts.undefined_regions;
+    return 0;
+  };
   while (w < stop) {
-    const EventWord word = *w;
+    EventWord word = *w;
     std::uint32_t region = static_cast<std::uint32_t>(word & kRegionMask);
+    const std::uint64_t low = TimeOf(word);
     if (region >= kKindBase) [[unlikely]] {
       const RecordStep record = StepRecord(w, chunk, now, limit, counts);
       if (record.words == 0) w = end;
       // Of a ring only the first chunk's open frames say something new.
       if (record.sound && (KindOf(word) != RecordKind::kOpenFrames || at.chunk == 0)) {
         now = record.now;
-        hot.Record(w, now);
+        if (!record.enters) hot.Record(w, now);
       }
+      const EventWord* const at_record = w;
       w += record.words;
-      continue;
-    }
-    const std::uint64_t low = TimeOf(word);
-    if (low == 0) [[unlikely]] {
+      if (!record.enters) continue;
+      region = record.region;
+      word = 0;  // an enter
+      if constexpr (HasCounted<decltype(hot)>) {
+        ++function_events;
+        hot.Counted(at_record, known(region), now);
+        continue;
+      }
+    } else if (low == 0) [[unlikely]] {
       if (word == 0) {
         ++counts.uncommitted;
         ++w;
@@ -171,19 +208,22 @@ bool ScanSome(const ThreadStream& thread, std::uint32_t region_count, std::uint6
         const UnclockedRun run = MeasureUnclocked(w, end, now, limit);
         unclocked = run.events;
         step = run.step;
+        if constexpr (HasRuns<decltype(hot)>) hot.Run(w, run);
       }
       --unclocked;
       now += step;
+      ++w;
+      if constexpr (HasUnclocked<decltype(hot)>) {
+        ++function_events;
+        hot.Unclocked(known(region), IsLeave(word), now);
+        continue;
+      }
     } else {
       now = TicksAfter(now, low, limit);
-    }
-    if (region == 0 || region >= region_count) [[unlikely]] {
-      region = 0;
-      ++counts.undefined_regions;
+      ++w;
     }
     ++function_events;
-    hot.Function(region, IsLeave(word), now);
-    ++w;
+    hot.Function(known(region), IsLeave(word), now);
   }
   if constexpr (HasHotPart<Visitor>) visitor.End(hot);
   counts.function_events += function_events;

@@ -149,12 +149,18 @@ struct DefinitionReader {
     const auto text = Text<VisitCounts>(words, d.entries * 16);
     if (!text) return false;
     for (std::uint64_t i = 0; i < d.entries; ++i) {
-      std::uint32_t region = 0;
-      std::uint64_t visits = 0;
-      std::memcpy(&region, text->data() + i * 16, 4);
-      std::memcpy(&visits, text->data() + i * 16 + 8, 8);
-      stream.visit_counts.emplace_back(region, visits);
+      VisitCount count;
+      static_assert(sizeof(count) == 16);
+      std::memcpy(&count, text->data() + i * 16, 16);
+      stream.visit_counts.push_back(count);
     }
+    return true;
+  }
+
+  bool Calibrated(std::span<const EventWord> words) {
+    Calibration d;
+    if (!Get(words, d)) return false;
+    stream.calibration = d;
     return true;
   }
 
@@ -258,6 +264,8 @@ struct DefinitionReader {
         return Filter(words);
       case RecordKind::kOverwritten:
         return Ring(words);
+      case RecordKind::kCalibration:
+        return Calibrated(words);
       default:
         return true;  // of a newer writer, which says so if it matters
     }

@@ -108,6 +108,12 @@ struct FilterUse {
   std::uint64_t functions = 0;
   std::uint64_t filtered = 0;
 };
+/// Visits of a region by a thread since its last sample of it, without any event.
+struct VisitCount {
+  std::uint32_t region = 0;
+  std::uint32_t thread = 0;
+  std::uint64_t visits = 0;
+};
 struct AvailabilityDefinition {
   std::string_view what;
   bool available = false;
@@ -148,7 +154,8 @@ struct Stream {
   std::deque<std::string> symbol_texts;  // what the files of code said; regions refer to them
   std::vector<Switched> switches;
   FilterUse filter;
-  std::vector<std::pair<std::uint32_t, std::uint64_t>> visit_counts;
+  std::vector<VisitCount> visit_counts;
+  std::optional<Calibration> calibration;
   std::optional<DefineWorld> world;
   std::optional<ProcessEnd> end;
   bool is_host = false;

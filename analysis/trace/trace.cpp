@@ -389,17 +389,25 @@ const Event* EventCursor::Next() {
   struct Collector {
     std::vector<Event>& events;
     const std::vector<std::uint32_t>& regions;
+    UnclockedRun& run;
     void Function(std::uint32_t region, bool leave, std::uint64_t ticks) {
-      events.push_back({ticks, nullptr, regions[region], leave});
+      events.push_back({ticks, nullptr, regions[region], leave, ticks, ticks});
+    }
+    void Counted(const EventWord* record, std::uint32_t region, std::uint64_t ticks) {
+      events.push_back({ticks, nullptr, regions[region], false, ticks, ticks, record});
+    }
+    void Run(const EventWord*, const UnclockedRun& begun) { run = begun; }
+    void Unclocked(std::uint32_t region, bool leave, std::uint64_t ticks) {
+      events.push_back({ticks, nullptr, regions[region], leave, run.begin, run.end});
     }
     void Record(const EventWord* record, std::uint64_t ticks) {
-      events.push_back({ticks, record, 0, false});
+      events.push_back({ticks, record, 0, false, ticks, ticks});
     }
   };
   while (next_ == batch_.size()) {
     batch_.clear();
     next_ = 0;
-    Collector collector{batch_, process_->regions};
+    Collector collector{batch_, process_->regions, run_};
     const std::size_t chunk = at_.chunk;
     if (!ScanSome(*location_->stream, process_->RegionCount(), kBatchWords, at_, counts_,
                   collector))

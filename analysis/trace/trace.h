@@ -202,6 +202,9 @@ struct Event {
   const EventWord* record = nullptr;  // null: a function event
   std::uint32_t region = 0;           // of the archive
   bool leave = false;
+  std::uint64_t earliest = 0;  // `ticks` lies between these; equal where a clock was read
+  std::uint64_t latest = 0;
+  const EventWord* counted = nullptr;  // the CountedEnter that this event is
 };
 
 /// Reads the events of one location one by one, in batches of the one decoder.
@@ -219,6 +222,7 @@ class EventCursor {
   const Process* process_;
   ScanPosition at_;
   ScanCounts counts_;
+  UnclockedRun run_;  // the last one
   std::vector<Event> batch_;
   std::size_t next_ = 0;
 };

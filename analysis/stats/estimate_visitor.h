@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: MIT
+// Sees the events of one location of a run whose events have a price, and keeps what estimates are
+// made of: time on top of the stack of timed frames, what was recorded inside, samples.
+//
+// Frames are of two sorts. Timed ones have exact times; the time between two clocked events is
+// charged to the innermost of them. The others (events without a clock, samples) are transparent
+// for time: what they took is estimated from the samples and moved from the timed frame around them
+// afterwards (estimate.h).
+#ifndef STIPPLE_ANALYSIS_STATS_ESTIMATE_VISITOR_H
+#define STIPPLE_ANALYSIS_STATS_ESTIMATE_VISITOR_H
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "analysis/trace/jump_points.h"
+#include "analysis/trace/mpi_collector.h"
+#include "analysis/trace/scan.h"
+
+namespace stipple {
+
+/// Prices of events, in 1/256 ticks: a Calibration, zeros where the archive has none.
+struct EventPrices {
+  std::uint64_t timed = 0;        // both events of a visit
+  std::uint64_t timed_inner = 0;  // of that, what the visit's own time holds
+  std::uint64_t sampled = 0;
+  std::uint64_t sampled_inner = 0;
+  std::uint64_t no_clock = 0;
+  std::uint64_t counted = 0;
+
+  static EventPrices Of(const Stream& stream);
+  std::uint64_t TimedOuter() const { return timed - std::min(timed, timed_inner); }
+  std::uint64_t SampledOuter() const { return sampled - std::min(sampled, sampled_inner); }
+};
+
+/// One timed visit of a counted region, and how many visits it stands for. Ticks, corrected for
+/// what recording cost inside; below 0 where that was more than the visit.
+struct VisitSample {
+  std::uint32_t around = 0;  // region of the innermost timed frame
+  bool nested = false;       // its own region is open further out
+  double visits = 1;
+  double inclusive = 0;
+  double exclusive = 0;
+};
+
+/// What a location has of one region.
+struct RegionTally {
+  // Timed visits; ticks.
+  std::uint64_t timed_visits = 0;
+  std::uint64_t inclusive = 0;
+  std::uint64_t exclusive = 0;       // while it was the innermost timed frame
+  std::uint64_t inclusive_cost = 0;  // 1/256 ticks, of all recorded inside
+  std::uint64_t timed_children = 0;  // timed visits whose innermost timed frame around it was
+  std::uint32_t open = 0;
+  std::uint32_t is_watched = 0;  // its events go to the collector, too
+  // Others.
+  std::uint64_t other_cost = 0;    // 1/256 ticks, of events that are not timed, in `exclusive`
+  std::uint64_t other_visits = 0;  // counted ones, too
+  std::uint64_t other_events = 0;  // that were written for them
+  std::uint64_t pending = 0;       // visits that no sample stands for yet
+  bool recursive = false;          // a sample of it held further visits of it
+  std::vector<VisitSample> samples;
+};
+
+/// A step of the budget.
+struct ModeStep {
+  std::uint64_t ticks = 0;
+  std::uint32_t region = 0;  // of the process
+  RegionModeKind mode = RegionModeKind::kTimed;
+  std::uint64_t visits = 0;
+  double mean_ticks = 0;
+};
+
+class EstimateVisitor {
+ public:
+  enum class FrameKind : std::uint32_t { kTimed = 0, kSample, kInside, kUnclocked };
+  struct Frame {
+    RegionTally* region;
+    RegionTally* charged;  // the innermost timed frame's, this one included
+    std::uint64_t enter;
+    std::uint64_t cost;  // of all events before it, 1/256 ticks
+    FrameKind kind;
+  };
+
+  /// What each event touches: a local object of the scan, so that it stays in registers.
+  struct Hot {
+    EstimateVisitor* owner;
+    RegionTally* regions;
+    Frame* top;
+    Frame* limit;
+    std::uint64_t begin;
+    std::uint64_t end;
+    std::uint64_t last;
+    std::uint64_t cost;  // of all events so far, 1/256 ticks
+    std::uint64_t timed_price;
+    std::uint64_t timed_inner;
+
+    void Function(std::uint32_t region, bool leave, std::uint64_t ticks) {
+      const std::uint64_t now = Charge(ticks);
+      RegionTally* const r = regions + region;
+      if (r->is_watched != 0) [[unlikely]]
+        owner->collector_->Function(region, leave, ticks);
+      if (!leave) {
+        r->timed_visits += static_cast<std::uint64_t>(now == ticks);
+        ++top->charged->timed_children;
+        Push(r, r, now, FrameKind::kTimed);
+        return;
+      }
+      if (top->region != r) [[unlikely]] {
+        if (r->open == 0) {
+          ++owner->leaves_without_enter_;
+          return;
+        }
+        *this = owner->Repair(*this, r, ticks);
+      }
+      if (top->kind == FrameKind::kTimed && top[-1].kind == FrameKind::kTimed) [[likely]]
+        PopTimed(now);
+      else
+        *this = owner->LeaveOther(*this, now);
+    }
+    void Unclocked(std::uint32_t region, bool leave, std::uint64_t ticks) {
+      if (owner->is_sparse_)
+        Function(region, leave, ticks);
+      else
+        *this = owner->Transparent(*this, regions + region, leave, ticks);
+      ++owner->unclocked_events_;
+    }
+    void Counted(const EventWord* record, std::uint32_t region, std::uint64_t ticks) {
+      *this = owner->EnterCounted(*this, record, regions + region, Charge(ticks), ticks);
+    }
+    void Record(const EventWord* record, std::uint64_t ticks) {
+      *this = owner->Other(*this, record, ticks);
+      if (owner->collector_ != nullptr) owner->collector_->Record(record, ticks);
+    }
+
+    std::uint64_t Charge(std::uint64_t ticks) {
+      const std::uint64_t now = ticks < begin ? begin : ticks > end ? end : ticks;
+      top->charged->exclusive += now - last;
+      last = now;
+      return now;
+    }
+    void Push(RegionTally* region, RegionTally* charged, std::uint64_t now, FrameKind kind) {
+      ++region->open;
+      if (top == limit) [[unlikely]] {
+        top = owner->Grow();
+        limit = owner->Limit();
+      }
+      *++top = {region, charged, now, cost, kind};
+    }
+    void PopTimed(std::uint64_t now) {
+      RegionTally* const r = top->region;
+      const std::uint64_t outermost = 0 - static_cast<std::uint64_t>(--r->open == 0);
+      r->inclusive += (now - top->enter) & outermost;
+      r->inclusive_cost += (cost - top->cost + timed_inner) & outermost;
+      cost += timed_price;
+      --top;
+    }
+  };
+
+  /// Of a sparse run events without a clock are as good as others; else they are transparent.
+  /// Events of MPI functions and records go to `collector`, if there is one, at the same time.
+  EstimateVisitor(std::uint32_t region_count, std::uint64_t begin, std::uint64_t end,
+                  const EventPrices& prices, bool is_sparse, MpiCollector* collector);
+  EstimateVisitor(const EstimateVisitor&) = delete;
+  EstimateVisitor& operator=(const EstimateVisitor&) = delete;
+
+  Hot Begin() const { return hot_; }
+  void End(const Hot& hot) { hot_ = hot; }
+  /// Ends the frames that are still open. `counts`: visits without events since the last samples.
+  void Finish(std::uint64_t ticks, std::span<const VisitCount> counts, std::uint32_t thread);
+
+  /// By region of the process; the last is what no region had.
+  std::span<const RegionTally> regions() const { return regions_; }
+  std::span<const ModeStep> steps() const { return steps_; }
+  const EventPrices& prices() const { return prices_; }
+  bool is_sparse() const { return is_sparse_; }
+  std::uint64_t unclocked_events() const { return unclocked_events_; }
+  std::uint64_t leaves_without_enter() const { return leaves_without_enter_; }
+  std::uint64_t enters_without_leave() const { return enters_without_leave_; }
+
+ private:
+  /// A sample that has not been left.
+  struct OpenSample {
+    std::size_t depth;  // of its frame
+    std::uint64_t visits;
+    std::uint64_t inside;       // ticks of what was recorded directly inside
+    std::uint64_t inside_cost;  // 1/256 ticks, of those events outside of their own time
+    bool nested;
+    bool counts;  // lies in the selected span
+  };
+
+  // By value: a hot part whose address is known elsewhere would not stay in registers.
+  Hot Repair(Hot hot, const RegionTally* region, std::uint64_t ticks);
+  Hot Transparent(Hot hot, RegionTally* region, bool leave, std::uint64_t ticks);
+  Hot EnterCounted(Hot hot, const EventWord* record, RegionTally* region, std::uint64_t now,
+                   std::uint64_t ticks);
+  Hot LeaveOther(Hot hot, std::uint64_t now);
+  Hot Other(Hot hot, const EventWord* record, std::uint64_t ticks);
+  Hot Jump(Hot hot, const EventWord* record, std::uint64_t ticks);
+  void SwitchContext(Hot& hot, std::uint32_t from, std::uint32_t to);
+  void PopLeft(Hot& hot, std::uint64_t ticks);
+  void DropOther(Hot& hot);
+  void TellSample(const Hot& hot, std::uint64_t ticks, std::uint64_t outer);
+  std::uint32_t IndexOf(const RegionTally* region) const {
+    return static_cast<std::uint32_t>(region - regions_.data());
+  }
+  std::size_t Depth(const Hot& hot) const {
+    return static_cast<std::size_t>(hot.top - stack_.data());
+  }
+  Frame* Limit() { return stack_.data() + stack_.size() - 1; }
+  /// Doubles a full stack; returns its top.
+  Frame* Grow() {
+    const std::size_t used = stack_.size();
+    stack_.resize(2 * used);
+    return stack_.data() + used - 1;
+  }
+
+  EventPrices prices_;
+  bool is_sparse_;
+  std::vector<RegionTally> regions_;
+  std::vector<Frame> stack_;
+  std::vector<OpenSample> open_samples_;  // outermost first
+  MpiCollector* collector_;
+  std::uint64_t unclocked_events_ = 0;
+  std::uint64_t leaves_without_enter_ = 0;
+  std::uint64_t enters_without_leave_ = 0;
+  std::vector<ModeStep> steps_;
+  JumpPoints points_;
+  std::unordered_map<std::uint32_t, std::vector<Frame>> waiting_;  // by context
+  Hot hot_{};
+};
+
+}  // namespace stipple
+
+#endif
