@@ -24,7 +24,7 @@ inline constexpr std::uint32_t kGranuleBytes = 16 * 1024;
 /// Features that a reader must know to read a stream at all; a set bit it does not know makes it
 /// refuse.
 enum class Feature : std::uint64_t {
-  kCompacted = 1,
+  kCompacted = 1,      // chunks stand behind each other, those of events are coded: `stipple compact`
   kStackSwitches = 2,  // set when the first StackSwitch is written
 };
 
@@ -59,6 +59,7 @@ static_assert(sizeof(FileHeader) == 688);
 enum class ChunkKind : std::uint32_t {
   kEvents = 1,       // of one thread, in the order of the slots
   kDefinitions = 2,  // of the process: definitions, clock readings, losses, the end; never recycled
+  kCompacted = 3,    // kEvents, coded; only in a stream with Feature::kCompacted
 };
 
 /// First bytes of a chunk.
@@ -75,6 +76,21 @@ struct ChunkHeader {
   std::uint64_t reserved;
 };
 static_assert(sizeof(ChunkHeader) == 64);
+
+// A stream with Feature::kCompacted has no granules: its first chunk stands at
+// kFirstCompactedByte, each further one behind the one before, all multiples of kCompactedAlign.
+inline constexpr std::uint32_t kCompactedAlign = 64;
+inline constexpr std::uint32_t kFirstCompactedByte = 704;
+static_assert(kFirstCompactedByte >= sizeof(FileHeader) &&
+              kFirstCompactedByte % kCompactedAlign == 0);
+
+/// Behind the header of a chunk of kind kCompacted; `coded_bytes` of a zstd frame follow.
+struct CompactedChunk {
+  std::uint64_t words;        // of the chunk as it was, behind its header
+  std::uint64_t coded_bytes;  // of the frame
+};
+static_assert(sizeof(CompactedChunk) == 16);
+inline constexpr std::uint64_t kMostCompactedWords = std::uint64_t{1} << 21;
 
 /// One word of a chunk.
 using EventWord = std::uint64_t;
