@@ -24,7 +24,7 @@ inline constexpr std::uint32_t kGranuleBytes = 16 * 1024;
 /// Features that a reader must know to read a stream at all; a set bit it does not know makes it
 /// refuse.
 enum class Feature : std::uint64_t {
-  kCompacted = 1,
+  kCompacted = 1,  // chunks stand behind each other, those of events are coded: `stipple compact`
   kStackSwitches = 2,  // set when the first StackSwitch is written
 };
 
@@ -59,8 +59,9 @@ static_assert(sizeof(FileHeader) == 688);
 enum class ChunkKind : std::uint32_t {
   kEvents = 1,       // of one thread, in the order of the slots
   kDefinitions = 2,  // of the process: definitions, clock readings, losses, the end; never recycled
-  kKernel = 3,  // of one thread, what the kernel tells of it: ContextSwitch, Counter; their times are
-                // nanoseconds of CLOCK_MONOTONIC_RAW
+  kKernel = 3,  // of one thread, what the kernel tells of it: ContextSwitch, Counter; their times
+                // are nanoseconds of CLOCK_MONOTONIC_RAW
+  kCompacted = 4,  // kEvents, coded; only in a stream with Feature::kCompacted
 };
 
 /// First bytes of a chunk.
@@ -77,6 +78,21 @@ struct ChunkHeader {
   std::uint64_t reserved;
 };
 static_assert(sizeof(ChunkHeader) == 64);
+
+// A stream with Feature::kCompacted has no granules: its first chunk stands at
+// kFirstCompactedByte, each further one behind the one before, all multiples of kCompactedAlign.
+inline constexpr std::uint32_t kCompactedAlign = 64;
+inline constexpr std::uint32_t kFirstCompactedByte = 704;
+static_assert(kFirstCompactedByte >= sizeof(FileHeader) &&
+              kFirstCompactedByte % kCompactedAlign == 0);
+
+/// Behind the header of a chunk of kind kCompacted; `coded_bytes` of a zstd frame follow.
+struct CompactedChunk {
+  std::uint64_t words;        // of the chunk as it was, behind its header
+  std::uint64_t coded_bytes;  // of the frame
+};
+static_assert(sizeof(CompactedChunk) == 16);
+inline constexpr std::uint64_t kMostCompactedWords = std::uint64_t{1} << 21;
 
 /// One word of a chunk.
 using EventWord = std::uint64_t;
@@ -350,7 +366,7 @@ struct OpenFrames {
   static constexpr RecordKind kKind = RecordKind::kOpenFrames;
   EventWord header;
   std::uint64_t ticks;
-  std::uint32_t depth;   // frames that were open; if more than `frames`, the innermost ones follow
+  std::uint32_t depth;  // frames that were open; if more than `frames`, the innermost ones follow
   std::uint32_t frames;
   std::uint32_t points;
   std::uint32_t unknown;  // 1: the thread has switched stacks, its frames are not known
@@ -459,7 +475,8 @@ struct SystemCall {
   std::uint64_t enter_ticks;
   std::int64_t result;   // as the kernel gives it: an error is -errno
   std::uint32_t number;  // of the kernel, x86-64
-  std::uint32_t name;    // DefineName of the libc function if that is called otherwise (sleep); else 0
+  std::uint32_t
+      name;  // DefineName of the libc function if that is called otherwise (sleep); else 0
 };
 static_assert(sizeof(SystemCall) == 40);
 
