@@ -147,7 +147,7 @@ inline void Append(std::uint32_t token) {
   stipple_control& control = *stipple_stream;
   const std::uint64_t slot = Reserve(control, sizeof(EventWord));
   if (slot >= control.end) [[unlikely]] {
-    stipple_slow_event(token);
+    stipple_slow_event(token, 0);  // no mode, so no sample
     return;
   }
   const std::uint64_t ticks = (slot & control.clock_mask) == 0 ? ReadTicks() : 0;

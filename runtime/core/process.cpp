@@ -13,6 +13,7 @@
 #include "runtime/core/clock.h"
 #include "runtime/core/recorder.h"
 #include "runtime/core/region.h"
+#include "runtime/core/sample.h"
 #include "runtime/core/settings.h"
 #include "runtime/core/stream.h"
 #include "runtime/core/switch.h"
@@ -266,7 +267,7 @@ void NoteEnd(Ending how, int status) {
   // A child of vfork runs in its parent's memory: it is not the parent that ends.
   if (process->pid != GetPid()) return;
   Holding holding(process->lock);
-  if (how != Ending::kExec) WriteVisitCounts(*process);
+  WriteVisitCounts(*process);
   if (ProcessEnd* place = process->definitions.process_end) {
     constexpr std::uint64_t kWords = sizeof(ProcessEnd) / 8;
     std::atomic_ref<EventWord> header(place->header);

@@ -48,7 +48,7 @@ struct Process {
   std::atomic<std::uint64_t> lost;
   int error;  // errno that stopped the recording
   std::uint32_t said_line;
-  std::uint32_t said_counts;
+  std::uint32_t calibrated;
   std::uint32_t watched;    // a thread of ours watches for silent ones
   std::uint64_t stop_ms;    // after begin
   std::uint32_t unloading;  // calls of dlclose that are under way

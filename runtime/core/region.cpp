@@ -31,6 +31,8 @@ struct Entry {
   std::uint64_t offset;  // in `module`: a function known by its address
   std::uint32_t module;  // 0: one that brought its name
   bool off;              // switched off by itself
+  bool has_slots;
+  RegionModeKind mode;
 };
 
 std::uint64_t HashOf(const Entry& entry) {
@@ -186,8 +188,10 @@ void RemoveObject(std::uint32_t index) {
   UnmapRegions(gone);
 }
 
+/// A slot that stays as it is is not written: its page may still be the file's own.
 void SetSlot(stipple_descriptor& descriptor, std::uint32_t token) {
-  std::atomic_ref<std::uint32_t>(descriptor.id).store(token, std::memory_order_release);
+  std::atomic_ref<std::uint32_t> slot(descriptor.id);
+  if (slot.load(std::memory_order_relaxed) != token) slot.store(token, std::memory_order_release);
 }
 
 void Silence(stipple_dso& object) {
@@ -298,6 +302,7 @@ void DefineObject(Process& process, const Object& object) {
         RegionFor(process, MakeEntry(name, TextAt(d.file), d.line, RegionKind::kFunction));
     if (process.state.load(std::memory_order_relaxed) == State::kStopped) return;
     object.regions[i] = region;
+    if (region != 0) regions[region].has_slots = true;
     SetSlot(d, TokenOf(region));
   }
 }
@@ -318,9 +323,15 @@ void SilenceAll() {
   SilenceAddresses();
 }
 
+RegionModeKind ModeOf(std::uint32_t region) { return regions[region].mode; }
+void SetMode(std::uint32_t region, RegionModeKind mode) { regions[region].mode = mode; }
+bool HasSlots(std::uint32_t region) { return regions[region].has_slots; }
+
 std::uint32_t TokenOf(std::uint32_t region) {
+  constexpr std::uint32_t kModes[] = {0, STIPPLE_NO_CLOCK, STIPPLE_COUNT_ONLY};
   const bool has_region = region != 0 && region != kFiltered;
-  return has_region && IsSwitchedOn() && !regions[region].off ? region : 0;
+  if (!has_region || !IsSwitchedOn() || regions[region].off) return 0;
+  return region | kModes[static_cast<std::uint32_t>(regions[region].mode)];
 }
 
 void UpdateAll() {

@@ -18,7 +18,15 @@ void DefineAll(Process& process);
 /// Sets the id slots of every registered object to 0: no more events. The lock is held.
 void SilenceAll();
 
-/// What the id slot of a region's functions is to hold now: its id, or 0 while it is switched off.
+/// How visits of a region are recorded from now on; UpdateAll makes it so. A forked child keeps it.
+RegionModeKind ModeOf(std::uint32_t region);
+void SetMode(std::uint32_t region, RegionModeKind mode);
+
+/// Whether a region's functions have id slots: only these know modes.
+bool HasSlots(std::uint32_t region);
+
+/// What the id slot of a region's functions is to hold now: its id and mode, or 0 while it is
+/// switched off.
 std::uint32_t TokenOf(std::uint32_t region);
 
 /// Sets every id slot to what it is to hold. The lock is held.

@@ -37,13 +37,36 @@ std::uint64_t SparseDistance(const char* text) {
   return *text == '\0' && power_of_two && distance <= 4096 ? distance : 0;
 }
 
+/// The P of "budget:P", percent above 0 and up to 100, as a share; 0 if it is none.
+double BudgetShare(const char* text) {
+  if (!StartsWith(text, "budget:")) return 0;
+  double percent = 0, unit = 1;
+  bool fraction = false, digits = false;
+  for (text += 7; *text != '\0' && *text != '%'; ++text) {
+    if (*text == '.' && !fraction) {
+      fraction = true;
+      continue;
+    }
+    if (*text < '0' || *text > '9') return 0;
+    digits = true;
+    percent = 10 * percent + (*text - '0');
+    if (fraction) unit *= 10;
+  }
+  if (*text == '%') ++text;
+  percent /= unit;
+  return *text == '\0' && digits && percent <= 100 ? percent / 100 : 0;
+}
+
 void ReadClockSetting() {
   const char* clock = getenv("STIPPLE_CLOCK");
-  if (clock == nullptr || *clock == '\0') clock = "exact";
+  if (clock == nullptr || *clock == '\0') clock = "budget:5";
   std::uint64_t distance = SparseDistance(clock);
-  if (distance == 0 && !(StartsWith(clock, "exact") && clock[5] == '\0')) {
+  settings.budget = BudgetShare(clock);
+  const bool exact = StartsWith(clock, "exact") && clock[5] == '\0';
+  if (distance == 0 && settings.budget == 0 && !exact) {
     Line<256> line;
-    line.Add("stipple: clock '").Add(clock).Add("' is unknown (exact, sparse:N); using exact\n");
+    line.Add("stipple: clock '").Add(clock);
+    line.Add("' is unknown (exact, sparse:N, budget:P); using exact\n");
     line.Print();
     clock = "exact";
   }

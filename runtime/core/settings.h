@@ -10,6 +10,7 @@ namespace stipple {
 struct Settings {
   const char* archive;       // absolute path of an existing directory; null: record nothing
   std::uint64_t clock_mask;  // stipple_control.clock_mask
+  double budget;             // share of the time that recording may take; 0: no limit
   const char* filter;        // absolute path of a filter file; null: none
   bool paused;               // begin switched off
   char text[256];            // for the file header, "clock=exact"

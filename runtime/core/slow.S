@@ -4,30 +4,23 @@
  * flags are kept.
  *
  * Events that are only counted, or written without the clock, are done here in a few instructions.
- * Everything else saves the registers and calls stipple_slow_event. For an unwinder this is a
+ * The samples among them save the general registers and call stipple_sample; everything else saves
+ * all registers and calls stipple_slow_event. For an unwinder this is a
  * function called from where r11 points; its stack pointer there is ours at the jump. The 128 bytes
  * below that may be the interrupted function's red zone. */
 #include "stipple/abi.h"
 
 	.hidden	stipple_stream
+	.hidden	stipple_counts
 	.hidden	stipple_save_mask
 	.hidden	stipple_save_bytes
 	.hidden	stipple_slow_event
+	.hidden	stipple_sample
+	.hidden	stipple_sample_leave
 
-	.text
-	.p2align 5
-	.globl	stipple_slow
-	.hidden	stipple_slow
-	.type	stipple_slow, @function
-stipple_slow:
-	.cfi_startproc
-	.cfi_def_cfa rsp, 0
-	.cfi_register rip, r11
-	endbr64
-	testl	$STIPPLE_MODE_MASK, %eax
-	jnz	.Lmode
-
-.Lgeneral:
+	/* Steps over the red zone and saves the general registers that a call may change, and rbx;
+	 * rbp leads to them. */
+	.macro	SAVE
 	leaq	-128(%rsp), %rsp
 	.cfi_def_cfa_offset 128
 	pushq	%r11
@@ -47,7 +40,68 @@ stipple_slow:
 	pushq	%r8
 	pushq	%r9
 	pushq	%r10
+	movl	%eax, %ebx			/* token */
 	movl	%eax, %edi
+	leaq	144(%rbp), %rsi			/* stack pointer at the jump */
+	.endm
+
+	.text
+	.p2align 6
+	.globl	stipple_slow
+	.hidden	stipple_slow
+	.type	stipple_slow, @function
+stipple_slow:
+	.cfi_startproc
+	.cfi_def_cfa rsp, 0
+	.cfi_register rip, r11
+	.cfi_remember_state
+	endbr64
+
+	/* Count: one less until this thread's next sample of the region (sample.h). The token is the
+	 * region and this one bit, so the bit is taken off in the address. */
+	testl	$STIPPLE_COUNT_ONLY, %eax
+	jz	.Lnot_counted
+	movq	stipple_counts@gottpoff(%rip), %rdx
+	movq	%fs:(%rdx), %rdx
+	testq	%rdx, %rdx
+	jz	.Lask				/* no counts yet, or a sample is open */
+	subl	$1, -8*STIPPLE_COUNT_ONLY(%rdx,%rax,8)
+	js	.Ldue
+	xorl	%eax, %eax
+
+	/* A routine that was called and left by a jump leaves the processor with a prediction too
+	 * many: the program's next return would go there, 7 ns late. Where its return address still
+	 * stands below the stack pointer (it cannot for code in line) it is used up by returning to
+	 * it: the instruction there is the step back over the red zone. */
+.Lreturn:
+	leaq	-4(%r11), %rdx
+	cmpq	%rdx, -136(%rsp)
+	je	.Lcalled
+	notrack jmp	*%r11
+.Lcalled:
+	leaq	-136(%rsp), %rsp
+	.cfi_def_cfa_offset 136
+	cmpq	%rdx, (%rsp)			/* again: no signal handler changes it now */
+	jne	.Lnot_called
+	xorl	%edx, %edx
+	rdsspq	%rdx
+	testq	%rdx, %rdx			/* with a shadow stack, the routine has removed it there */
+	jnz	.Lnot_called
+	ret
+.Lnot_called:
+	leaq	136(%rsp), %rsp
+	.cfi_def_cfa_offset 0
+	notrack jmp	*%r11
+
+.Lnot_counted:
+	testl	$STIPPLE_NO_CLOCK, %eax
+	jnz	.Lno_clock
+	testl	$STIPPLE_SAMPLED, %eax
+	jnz	.Lsample_leave
+
+.Lgeneral:
+	SAVE
+.Lsaved:
 	subq	stipple_save_bytes(%rip), %rsp
 	andq	$-64, %rsp
 	movl	stipple_save_mask(%rip), %eax
@@ -94,7 +148,7 @@ stipple_slow:
 	.cfi_register rip, r11
 	leaq	128(%rsp), %rsp
 	.cfi_def_cfa_offset 0
-	notrack jmp	*%r11
+	jmp	.Lreturn
 
 .Lold_processor:
 	.cfi_def_cfa rbp, 144
@@ -108,30 +162,44 @@ stipple_slow:
 	fxrstor64	(%rsp)
 	jmp	.Lback
 
-	/* A mode bit is set: count, or reserve without reading the clock. */
-.Lmode:
-	.cfi_def_cfa rsp, 0
-	.cfi_register rip, r11
-	.cfi_restore rbp
-	.cfi_restore rbx
-	testl	$STIPPLE_COUNT_ONLY, %eax
-	jz	.Lno_clock
-	movq	stipple_stream@gottpoff(%rip), %rdx
-	movq	%fs:(%rdx), %rdx
-	movq	24(%rdx), %rdx			/* counts */
-	testq	%rdx, %rdx
-	jz	.Lgeneral
-	testl	$STIPPLE_LEAVE, %eax
-	jnz	.Lcounted
-	andl	$STIPPLE_REGION_MASK, %eax
-	incq	(%rdx,%rax,8)
-.Lcounted:
-	xorl	%eax, %eax
-	notrack jmp	*%r11
+	/* What may become a sample: by code that has no use for vector registers. It answers with the
+	 * token, or with one that there is none of: then the general way is taken after all. */
+.Ldue:
+	.cfi_restore_state
+	.cfi_remember_state
+.Lask:
+	SAVE					/* rdx: the counts that have been changed, or null */
+	andq	$-64, %rsp
+	call	stipple_sample
+.Lsampled:
+	cmpl	$-1, %eax
+	movl	%ebx, %edi
+	leaq	144(%rbp), %rsi
+	je	.Lsaved
+	movl	%eax, %ebx
+	jmp	.Lback
 
+.Lsample_leave:
+	.cfi_restore_state
+	.cfi_remember_state
+	SAVE
+	andq	$-64, %rsp
+	call	stipple_sample_leave
+	jmp	.Lsampled
+
+	/* Reserve, but do not read the clock; an enter counts down to the next sample, too. */
 .Lno_clock:
-	testl	$STIPPLE_NO_CLOCK, %eax
-	jz	.Lgeneral
+	.cfi_restore_state
+	testl	$STIPPLE_LEAVE, %eax
+	jnz	.Lappend
+	movq	stipple_counts@gottpoff(%rip), %rdx
+	movq	%fs:(%rdx), %rdx
+	testq	%rdx, %rdx
+	jz	.Lask
+	subl	$1, -8*STIPPLE_NO_CLOCK(%rdx,%rax,8)
+	js	.Ldue
+	subl	$1, -8*STIPPLE_NO_CLOCK+4(%rdx,%rax,8)
+.Lappend:
 	leaq	-128(%rsp), %rsp
 	.cfi_def_cfa_offset 128
 	pushq	%rcx
@@ -149,7 +217,7 @@ stipple_slow:
 	.cfi_def_cfa_offset 128
 	leaq	128(%rsp), %rsp
 	.cfi_def_cfa_offset 0
-	notrack jmp	*%r11
+	jmp	.Lreturn
 .Lno_clock_full:
 	.cfi_def_cfa_offset 136
 	popq	%rcx

@@ -11,11 +11,14 @@
 #include <pthread.h>
 #include <sys/mman.h>
 
+#include "runtime/core/budget.h"
+#include "runtime/core/calibration.h"
 #include "runtime/core/chunk.h"
 #include "runtime/core/clock.h"
 #include "runtime/core/process_end.h"
 #include "runtime/core/recorder.h"
 #include "runtime/core/region.h"
+#include "runtime/core/sample.h"
 #include "runtime/core/save_area.h"
 #include "runtime/core/settings.h"
 #include "runtime/core/silence.h"
@@ -33,7 +36,6 @@ static __thread bool stipple_inside = false;
 namespace stipple {
 namespace {
 
-constexpr std::size_t kCountsBytes = (std::size_t{kMaxRegion} + 1) * sizeof(std::uint64_t);
 constexpr unsigned kInlineKeys = 32;  // glibc keeps these in the thread itself; others it allocates
 
 constinit bool prepared = false;
@@ -86,6 +88,14 @@ void DefineThisLocation(Process& process, const Thread& thread) {
   Define(process, &record, DefineLocation::kKind, sizeof record, name, record.name_bytes);
 }
 
+/// What events cost, by the process's first thread. The lock is held.
+void MeasureEvents(Process& process, Thread& thread) {
+  process.calibrated = 1;
+  const Calibration calibration = Calibrate();
+  Define(process, &calibration, Calibration::kKind, sizeof calibration);
+  BeginBudget(thread, calibration);
+}
+
 /// Gives this thread a state of its own; null if it cannot record.
 Thread* NewThread() {
   Process* process = BeginProcess();
@@ -103,10 +113,18 @@ Thread* NewThread() {
     // The watch reads the list without the lock.
     std::atomic_ref<Thread*>(process->threads).store(thread, std::memory_order_release);
     DefineThisLocation(*process, *thread);
+    if (process->calibrated == 0) MeasureEvents(*process, *thread);
   }
+  BeginReviews(*thread);
   stipple_stream = &thread->control;
   if (have_end_key) pthread_setspecific(end_key, thread);
   return thread;
+}
+
+/// This thread's state; null if it cannot record.
+Thread* AnyThread() {
+  Thread* thread = KnownThread();
+  return thread != nullptr ? thread : NewThread();
 }
 
 EventWord* WordAt(std::uint64_t address) { return reinterpret_cast<EventWord*>(address); }
@@ -115,19 +133,15 @@ void Commit(EventWord* place, EventWord word) {
   std::atomic_ref<EventWord>(*place).store(word, std::memory_order_release);
 }
 
-/// A record that did not fit leaves the chunk's last words zero for good.
-void NoteWaste(Thread& thread, std::uint64_t slot, std::uint64_t bytes) {
-  const auto begin = reinterpret_cast<std::uint64_t>(thread.chunk);
-  if (slot > begin && slot < thread.chunk_end && slot + bytes > thread.chunk_end)
-    thread.waste = slot;
-}
-
 /// Takes the thread's next chunk and decides whether its events step; false if recording has stopped.
 bool TakeNextChunk(Process& process, Thread& thread, std::uint64_t bytes, std::uint64_t ticks) {
   const bool slow =
       thread.chunk == nullptr ||
       ticks - reinterpret_cast<const ChunkHeader*>(thread.chunk)->ticks > kSlowTicks;
+  if (thread.chunk != nullptr) Review(process, thread, ticks);
   if (!NextChunk(process, thread, bytes, ticks)) return false;
+  thread.review_from = thread.control.cur;
+  WriteSteps(process, thread);
   if (slow) BeginStepping(thread, ticks);
   return true;
 }
@@ -135,8 +149,7 @@ bool TakeNextChunk(Process& process, Thread& thread, std::uint64_t bytes, std::u
 /// Reserves on the slow path: begins the process's or thread's stream, takes a chunk. Null: lost.
 /// Signals are blocked.
 EventWord* ReserveSlowly(std::uint64_t bytes, std::uint64_t ticks) {
-  Thread* thread = KnownThread();
-  if (thread == nullptr) thread = NewThread();
+  Thread* thread = AnyThread();
   if (thread == nullptr) return nullptr;
   Process* process = ThisProcess();
   WatchSilence(*process, ticks);
@@ -150,6 +163,12 @@ EventWord* ReserveSlowly(std::uint64_t bytes, std::uint64_t ticks) {
     if (!TakeNextChunk(*process, *thread, bytes, ticks)) break;
   }
   return nullptr;
+}
+
+void WriteRecord(EventWord* place, const void* record, RecordKind kind, std::size_t bytes) {
+  Commit(place, MakeHeader(kind, bytes / 8, false));
+  CopyBytes(place + 1, static_cast<const EventWord*>(record) + 1, bytes - 8);
+  Commit(place, MakeHeader(kind, bytes / 8, true));
 }
 
 /// A place for a record of `bytes`, or null and the loss is counted.
@@ -170,11 +189,14 @@ EventWord* ReserveRecord(std::uint64_t bytes) {
 }  // namespace
 
 void AppendRecord(const void* record, RecordKind kind, std::size_t bytes) {
-  EventWord* place = ReserveRecord(bytes);
-  if (place == nullptr) return;
-  Commit(place, MakeHeader(kind, bytes / 8, false));
-  CopyBytes(place + 1, static_cast<const EventWord*>(record) + 1, bytes - 8);
-  Commit(place, MakeHeader(kind, bytes / 8, true));
+  if (EventWord* place = ReserveRecord(bytes)) WriteRecord(place, record, kind, bytes);
+}
+
+void AppendInside(const void* record, RecordKind kind, std::size_t bytes) {
+  if (EventWord* place = ReserveSlowly(bytes, ReadTicks()))
+    WriteRecord(place, record, kind, bytes);
+  else
+    CountLost(1);
 }
 
 namespace {
@@ -217,6 +239,7 @@ void EndThread(void* pointer) {
   ForgetSkipped();
   if (thread->tid == 0 || process == nullptr) return;
   Holding holding(process->lock);
+  EndCounts(*process, *thread);
   thread->ended = 1;
   if (thread->chunk != nullptr)
     Syscall(SYS_madvise, Argument(thread->chunk), static_cast<long>(thread->chunk_bytes),
@@ -230,28 +253,27 @@ std::uint64_t NotBeforeChunk(std::uint64_t ticks) {
   return ticks < begin ? begin : ticks;
 }
 
-/// One visit of a region that is counted only, by a thread that has no counts yet.
-bool CountVisit(std::uint32_t region) {
-  Thread* thread = KnownThread();
-  if (thread == nullptr) thread = NewThread();
-  if (thread == nullptr) return false;
-  if (thread->control.counts == nullptr)
-    thread->control.counts = static_cast<std::uint64_t*>(MapWipedMemory(kCountsBytes));
-  if (thread->control.counts == nullptr) return false;
-  ++thread->control.counts[region];
-  return true;
-}
-
-/// Counts of one thread as pairs; returns how many fitted from `region` on, and moves it.
-std::uint64_t GatherCounts(const std::uint64_t* counts, std::uint32_t& region,
-                           std::uint64_t (*pairs)[2], std::uint64_t most) {
-  std::uint64_t entries = 0;
-  for (; region <= LastRegion() && entries < most; ++region) {
-    if (counts[region] == 0) continue;
-    pairs[entries][0] = region;
-    pairs[entries++][1] = counts[region];
+/// The enter of a region that is counted or recorded without the clock, where stipple_sample could
+/// not go on. Signals are blocked.
+std::uint32_t EnterDegraded(std::uint32_t token, std::uint64_t stack, std::uint64_t ticks) {
+  const std::uint32_t region = token & STIPPLE_REGION_MASK;
+  const bool event = (token & STIPPLE_NO_CLOCK) != 0;
+  Thread* thread = AnyThread();
+  Counts* counts = thread == nullptr ? nullptr : MakeCounts(*thread);
+  if (counts == nullptr) return kStippleGeneral;
+  if (IsReviewDue(*thread, ticks)) {
+    Review(*ThisProcess(), *thread, ticks);
+    WriteSteps(*ThisProcess(), *thread);
   }
-  return entries;
+  const Choice choice = Choose(*counts, region, stack);
+  if (choice == Choice::kCount) Count(*counts, region, event);
+  if (choice == Choice::kCount && !event) return 0;
+  EventWord* place =
+      ReserveSlowly(choice == Choice::kCount ? sizeof(EventWord) : sizeof(CountedEnter), ticks);
+  if (place == nullptr) return kStippleGeneral;
+  if (choice != Choice::kCount) return OpenCounted(*counts, place, region, choice, stack);
+  Commit(place, MakeEvent(0, false, RegionId{region}));
+  return token;
 }
 
 }  // namespace
@@ -277,23 +299,6 @@ std::int64_t ControlSlotOffset() {
                                    thread_pointer);
 }
 
-void WriteVisitCounts(Process& process) {
-  if (process.said_counts != 0) return;
-  process.said_counts = 1;
-  for (const Thread* thread = process.threads; thread != nullptr; thread = thread->next) {
-    if (thread->control.counts == nullptr) continue;
-    std::uint32_t region = 1;
-    while (region <= LastRegion()) {
-      std::uint64_t pairs[32][2];
-      VisitCounts record{};
-      record.entries = GatherCounts(thread->control.counts, region, pairs, 32);
-      if (record.entries == 0) continue;
-      Define(process, &record, VisitCounts::kKind, sizeof record,
-             reinterpret_cast<const char*>(pairs), record.entries * sizeof pairs[0]);
-    }
-  }
-}
-
 void CountLost(std::uint64_t events) {
   if (Thread* thread = KnownThread()) thread->lost += events;
   Process* process = ThisProcess();
@@ -305,16 +310,17 @@ void CountLost(std::uint64_t events) {
 extern "C" {
 
 /// Also called by slow.S.
-std::uint32_t stipple_slow_event(std::uint32_t token) {
+std::uint32_t stipple_slow_event(std::uint32_t token, std::uint64_t stack) {
   using namespace stipple;
   const std::uint64_t arrived = ReadTicks();
   const bool leave = (token & STIPPLE_LEAVE) != 0;
   const std::uint32_t region = token & STIPPLE_REGION_MASK;
   const Inside inside;
   if (!inside.again()) {
-    if ((token & STIPPLE_COUNT_ONLY) != 0) {
-      if (!leave && !CountVisit(region)) CountLost(1);
-      return 0;
+    if (!leave && (token & (STIPPLE_COUNT_ONLY | STIPPLE_NO_CLOCK)) != 0) {
+      const std::uint32_t exits = EnterDegraded(token, stack, arrived);
+      if (exits == kStippleGeneral) CountLost(1);
+      return exits == kStippleGeneral ? 0 : exits;
     }
     EventWord* place = ReserveSlowly(sizeof(EventWord), arrived);
     if (place != nullptr) {

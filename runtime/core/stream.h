@@ -28,6 +28,10 @@ struct Thread {
   std::uint64_t last_ticks;  // of the last event
   std::uint32_t steps;
   Thread* next;
+  // budget.h
+  std::uint64_t review_ticks;   // of the last review
+  std::uint64_t review_cpu_ns;  // of this thread, then
+  std::uint64_t review_from;    // what the next one has not seen yet
   std::uint32_t tid;
   std::uint32_t index;
   std::uint32_t end_rounds;  // rounds of key destructors seen
@@ -43,6 +47,13 @@ inline std::uint64_t Reserve(stipple_control& control, std::uint64_t bytes) {
   return slot;
 }
 
+/// A record that did not fit leaves the chunk's last words zero for good.
+inline void NoteWaste(Thread& thread, std::uint64_t slot, std::uint64_t bytes) {
+  const auto begin = reinterpret_cast<std::uint64_t>(thread.chunk);
+  if (slot > begin && slot < thread.chunk_end && slot + bytes > thread.chunk_end)
+    thread.waste = slot;
+}
+
 /// Gives this thread a state of its own if it has none; false if it cannot record.
 bool BeginThread();
 
@@ -52,11 +63,11 @@ void PrepareThreads();
 /// The offset of the slot that holds the control block's address from the thread pointer.
 std::int64_t ControlSlotOffset();
 
-/// Writes the visits that `process`'s threads counted only. The lock is held.
-void WriteVisitCounts(Process& process);
-
 /// Appends an event record (format.h), whether recording is switched on or off; its header is set here.
 void AppendRecord(const void* record, RecordKind kind, std::size_t bytes);
+
+/// The same, where signals are blocked and the thread is inside the runtime.
+void AppendInside(const void* record, RecordKind kind, std::size_t bytes);
 
 /// Counts events that could not be recorded.
 void CountLost(std::uint64_t events);
@@ -70,8 +81,9 @@ extern __thread stipple_control* stipple_stream;
 /// Where instrumented code jumps when its fast path does not fit (slow.S).
 void stipple_slow();
 
-/// An event that does not fit; `token` as in eax of the slow path. Returns the token for the exits.
-std::uint32_t stipple_slow_event(std::uint32_t token);
+/// An event that does not fit; `token` as in eax of the slow path, `stack` the stack pointer there.
+/// Returns the token for the exits.
+std::uint32_t stipple_slow_event(std::uint32_t token, std::uint64_t stack);
 }
 
 #endif

@@ -49,7 +49,8 @@ inline RunResult RunWriter(const std::string& archive, const std::string& argume
   const std::string out = scratch.path() + "/out", err = scratch.path() + "/err";
   const std::string variable =
       archive.empty() ? "unset STIPPLE_ARCHIVE; " : "export STIPPLE_ARCHIVE='" + archive + "'; ";
-  const std::string command = "{ " + variable + before + " " + STIPPLE_WRITER + " " + arguments +
+  // Every event, unless `before` sets another clock.
+  const std::string command = "{ " + variable + "export STIPPLE_CLOCK=exact; " + before + " " + STIPPLE_WRITER + " " + arguments +
                               " >" + out + " 2>" + err + "; } 2>/dev/null; exit $?";
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), ReadAll(out),

@@ -36,7 +36,7 @@ bool IsCalledFrom(std::uintptr_t caller) {
 
 constexpr std::uintptr_t kSlowBytes = 1024;  // at most
 volatile std::uintptr_t caller = 0;
-volatile int steps = 0, blind_steps = 0, calls = 0, blind_calls = 0;
+volatile int steps = 0, blind_steps = 0, calls = 0, blind_calls = 0, samples = 0;
 volatile bool throws = false;
 
 void AtStep(int, siginfo_t*, void* context) {
@@ -64,6 +64,17 @@ std::uint64_t counts[8];
 std::uint64_t slots[8];
 stipple_control control{};
 __thread stipple_control* stipple_stream = &control;
+__thread std::uint64_t* stipple_counts = nullptr;
+
+/// In the place of the runtime's: half of them go on the general way.
+std::uint32_t stipple_sample(std::uint32_t token, std::uint64_t, std::uint64_t*) {
+  samples = samples + 1;
+  if (!IsCalledFrom(caller)) blind_calls = blind_calls + 1;
+  return samples % 2 == 0 ? token : ~std::uint32_t{0};
+}
+std::uint32_t stipple_sample_leave(std::uint32_t token) {
+  return stipple_sample(token, 0, nullptr);
+}
 
 /// In the place of the runtime's.
 std::uint32_t stipple_slow_event(std::uint32_t token) {
@@ -94,15 +105,24 @@ TEST(Slow, UnwindsAtEveryInstruction) {
   SteppedEvent(dso, 1);                       // no chunk
   SteppedEvent(dso, 1 | STIPPLE_NO_CLOCK);    // no chunk
   SteppedEvent(dso, 1 | STIPPLE_COUNT_ONLY);  // no counts
+  EXPECT_EQ(calls, 2);
+  EXPECT_EQ(samples, 2);
+  SteppedEvent(dso, 1 | STIPPLE_SAMPLED | STIPPLE_LEAVE);
+  SteppedEvent(dso, 1 | STIPPLE_SAMPLED | STIPPLE_LEAVE);
   EXPECT_EQ(calls, 3);
-  control.counts = counts;
+  EXPECT_EQ(samples, 4);
+  stipple_counts = counts;
+  counts[1] = 2;
   control.cur = reinterpret_cast<std::uint64_t>(slots);
   control.end = control.cur + sizeof slots;
   SteppedEvent(dso, 1 | STIPPLE_NO_CLOCK);
   SteppedEvent(dso, 1 | STIPPLE_COUNT_ONLY);
   EXPECT_EQ(calls, 3);
   EXPECT_EQ(slots[0], 1u);
-  EXPECT_EQ(counts[1], 1u);
+  EXPECT_EQ(counts[1], 0xffffffff00000000);  // both of the two left, one of them wrote an event
+  SteppedEvent(dso, 1 | STIPPLE_COUNT_ONLY);  // due
+  SteppedEvent(dso, 1 | STIPPLE_COUNT_ONLY);
+  EXPECT_EQ(samples, 6);
   EXPECT_GT(steps, 100);
   EXPECT_EQ(blind_steps, 0);
   EXPECT_EQ(blind_calls, 0);

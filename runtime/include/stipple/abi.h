@@ -24,7 +24,13 @@
  * `slow` is a jump, not a call, so that neither red zone nor unwind tables of the function need to
  * know of it: eax = token (leave: token | STIPPLE_LEAVE), r11 = address to come back to, inside the
  * function and its unwind table; it comes back by `notrack jmp` with eax = the token for the exits
- * (enter) and every other register as it was, but for rdx, r11 and the flags. */
+ * (enter) and every other register as it was, but for rdx, r11 and the flags. Where the code of an
+ * event is a routine that the function calls, 128 bytes below its stack pointer, it may also come
+ * back by `ret` to the routine's caller, 4 bytes before r11, if the return address is still there.
+ *
+ * A slot holds at most one of the modes STIPPLE_COUNT_ONLY and STIPPLE_NO_CLOCK. Of the visits of
+ * such a region the runtime makes one in about a thousand a sample: an enter with a time, whose
+ * exits get a token with STIPPLE_SAMPLED and so come to the slow path again. */
 /* clang-format on */
 #ifndef STIPPLE_ABI_H
 #define STIPPLE_ABI_H
@@ -36,6 +42,9 @@
 #define STIPPLE_LEAVE 0x00800000      /* in an event word and in eax of `slow`, never in a slot */
 #define STIPPLE_COUNT_ONLY 0x01000000 /* count the visit, write no event; the exit's token is 0 */
 #define STIPPLE_NO_CLOCK 0x02000000   /* write the event without reading the clock */
+#define STIPPLE_SAMPLED 0x04000000    /* a timed visit of such a region: in an exit's token, never in
+                                         a slot; the bits above number the thread's open ones */
+#define STIPPLE_SAMPLED_SHIFT 27
 #define STIPPLE_MODE_MASK 0xff000000  /* any of these: the slow path */
 
 #ifndef __ASSEMBLER__
@@ -58,7 +67,7 @@ struct stipple_control {
   uint64_t cur;        /* address of the next free slot */
   uint64_t end;        /* first address behind the chunk; 0: always slow */
   uint64_t clock_mask; /* the clock is read when (slot address & clock_mask) == 0 */
-  uint64_t* counts;    /* visits by region, for STIPPLE_COUNT_ONLY; null until needed */
+  uint64_t* counts;    /* by region, for the two modes; null until needed. Of the runtime alone */
 };
 
 /* One shared object or program. */
