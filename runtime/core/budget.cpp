@@ -48,8 +48,7 @@ double TicksSince(const Process& process, Thread& thread, std::uint64_t ticks) {
     budget->ticks_per_ns =
         static_cast<double>(ticks - process.begin_ticks) /
         static_cast<double>(ReadClockNs(CLOCK_MONOTONIC_RAW) - process.begin_raw_ns);
-  const double used =
-      static_cast<double>(cpu_ns - thread.review_cpu_ns) * budget->ticks_per_ns;
+  const double used = static_cast<double>(cpu_ns - thread.review_cpu_ns) * budget->ticks_per_ns;
   if (used > 0 && used < passed) passed = used;
   thread.review_ticks = ticks;
   thread.review_cpu_ns = cpu_ns;
@@ -66,13 +65,17 @@ class Reading {
            static_cast<double>(samples_) * budget->sampled_visit;
   }
 
-  Reading() { ++budget->review; budget->touched = 0; }
+  Reading() {
+    ++budget->review;
+    budget->touched = 0;
+  }
 
   void Read(const EventWord* word, const EventWord* end) {
     while (word < end) {
       if (IsRecord(*word)) {
         const std::uint64_t words = WordsOf(*word);
-        if (!IsClosed(*word) || words == 0 || words > static_cast<std::uint64_t>(end - word)) return;
+        if (!IsClosed(*word) || words == 0 || words > static_cast<std::uint64_t>(end - word))
+          return;
         ReadRecord(word);
         word += words;
         continue;
@@ -233,9 +236,9 @@ void GiveBack(const Thread& thread) {
       left -= timed;
       cost.low_epochs = 0;
       ++cost.returns;
-      NoteStep(thread, region, ModeOf(region) == RegionModeKind::kCounted
-                                   ? RegionModeKind::kNoClock
-                                   : RegionModeKind::kTimed);
+      NoteStep(thread, region,
+               ModeOf(region) == RegionModeKind::kCounted ? RegionModeKind::kNoClock
+                                                          : RegionModeKind::kTimed);
     }
     if (ModeOf(region) != RegionModeKind::kTimed) budget->degraded_regions[kept++] = region;
   }
@@ -243,13 +246,14 @@ void GiveBack(const Thread& thread) {
   budget->epoch_ticks = budget->epoch_cost = 0;
 }
 
-/// A step of `thread`, taken off the list; false: there is none.
+/// The next step of `thread`, taken off the list; false: there is none.
 bool TakeStep(Process& process, const Thread& thread, RegionMode* record) {
   Holding holding(process.lock);
-  for (std::uint32_t i = budget->steps; i-- > 0;) {
+  for (std::uint32_t i = 0; i < budget->steps; ++i) {
     if (budget->step_list[i].thread != &thread) continue;
     *record = budget->step_list[i].record;
-    budget->step_list[i] = budget->step_list[--budget->steps];
+    --budget->steps;
+    for (; i < budget->steps; ++i) budget->step_list[i] = budget->step_list[i + 1];
     return true;
   }
   return false;

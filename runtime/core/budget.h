@@ -64,9 +64,8 @@ struct Budget {
 extern Budget* budget;  // null: another mode
 
 inline bool IsReviewDue(const Thread& thread, std::uint64_t ticks) {
-  return budget != nullptr &&
-         static_cast<std::int64_t>(ticks - thread.review_ticks) >
-             static_cast<std::int64_t>(kReviewTicks);
+  return budget != nullptr && static_cast<std::int64_t>(ticks - thread.review_ticks) >
+                                  static_cast<std::int64_t>(kReviewTicks);
 }
 
 /// By a sample.

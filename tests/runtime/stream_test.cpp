@@ -71,7 +71,8 @@ TEST(Stream, SparseReadsTheClockOncePerN) {
 TEST(Stream, AnUnknownClockIsNamedAndExactUsed) {
   const Directory archive;
   const auto run = RunWriter(archive.path(), "return 10", "export STIPPLE_CLOCK=fast;");
-  EXPECT_EQ(run.errors, "stipple: clock 'fast' is unknown (exact, sparse:N, budget:P); using exact\n");
+  EXPECT_EQ(run.errors,
+            "stipple: clock 'fast' is unknown (exact, sparse:N, budget:P); using exact\n");
   EXPECT_STREQ(OnlyStream(archive).header.settings, "clock=exact");
 }
 
