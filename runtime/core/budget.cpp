@@ -87,12 +87,6 @@ class Reading {
   }
 
  private:
-  static constexpr std::uint32_t kMostDepth = 128;
-  struct Open {
-    std::uint32_t region;
-    std::uint64_t time;  // 0: none
-  };
-
   static RegionCost& CostOf(std::uint32_t region) {
     RegionCost& cost = budget->regions[region < kCountedRegions ? region : kCountedRegions];
     if (cost.review != budget->review) {
@@ -106,7 +100,7 @@ class Reading {
   }
 
   void Enter(std::uint32_t region, std::uint64_t time) {
-    if (depth_ < kMostDepth) open_[depth_] = {region, time};
+    if (depth_ < Budget::kMostDepth) budget->open[depth_] = {region, time};
     ++depth_;
   }
 
@@ -137,17 +131,17 @@ class Reading {
       return Enter(region, time);
     }
     if (depth_ == 0) return;
-    if (--depth_ >= kMostDepth || open_[depth_].region != region) return;
-    if (open_[depth_].time == 0 || time == 0) return;
+    if (--depth_ >= Budget::kMostDepth) return;
+    const Budget::Open& open = budget->open[depth_];
+    if (open.region != region || open.time == 0 || time == 0) return;
     ++cost.timed;
-    cost.timed_ticks += (time - open_[depth_].time) & kTimeMask;
+    cost.timed_ticks += (time - open.time) & kTimeMask;
   }
 
   std::uint64_t timed_ = 0;
   std::uint64_t untimed_ = 0;
   std::uint64_t samples_ = 0;
   std::uint32_t depth_ = 0;
-  Open open_[kMostDepth];
 };
 
 /// What a review would save by one step of a region.
@@ -266,9 +260,14 @@ void BeginBudget(Thread& thread, const Calibration& calibration) {
   if (budget == nullptr) budget = static_cast<Budget*>(MapWipedMemory(sizeof(Budget)));
   if (budget == nullptr) return;
   budget->timed_event = kOverlap * calibration.timed_visit / 512;
-  budget->no_clock_event = calibration.no_clock_visit / 512.0;
+  budget->no_clock_event = kOverlap * calibration.no_clock_visit / 512;
   budget->counted_visit = calibration.counted_visit / 256.0;
   budget->sampled_visit = calibration.sampled_visit / 256.0;
+  // Whatever disturbed the measurement: each step saves something.
+  if (budget->no_clock_event < budget->counted_visit)
+    budget->no_clock_event = budget->counted_visit;
+  if (budget->timed_event < 2 * budget->no_clock_event)
+    budget->timed_event = 2 * budget->no_clock_event;
   for (std::uint32_t region = 1; region <= LastRegion() && region < kCountedRegions; ++region) {
     if (ModeOf(region) == RegionModeKind::kTimed) continue;
     if (budget->degraded < Budget::kMostDegraded)
@@ -326,7 +325,7 @@ void WriteSteps(Process& process, Thread& thread) {
   }
   if (!any) return;
   Holding holding(process.lock);
-  UpdateAll();
+  if (process.state.load(std::memory_order_relaxed) == State::kRecording) UpdateAll();
 }
 
 }  // namespace stipple

@@ -58,6 +58,13 @@ struct Budget {
     const Thread* thread;
   };
   Step step_list[kMostDegraded];
+  /// Open visits, while events are read again.
+  struct Open {
+    std::uint32_t region;
+    std::uint64_t time;  // 0: none
+  };
+  static constexpr std::uint32_t kMostDepth = 1024;
+  Open open[kMostDepth];
   RegionCost regions[kCountedRegions + 1];
 };
 

@@ -59,7 +59,7 @@ std::vector<stipple::RegionMode> StepsOf(const WalkedStream& stream) {
 std::vector<stipple::CountedEnter> CountedEntersOf(const WalkedStream& stream) {
   std::vector<stipple::CountedEnter> enters;
   for (const auto& [index, thread] : stream.threads)
-    enters.insert(enters.end(), thread.counted_enters.begin(), thread.counted_enters.end());
+    for (const stipple::CountedEnter& enter : thread.CountedEnters()) enters.push_back(enter);
   return enters;
 }
 
@@ -77,7 +77,7 @@ bool IsBalanced(const std::vector<EventWord>& events) {
   return open.empty();
 }
 
-WalkedStream Run(const std::string& arguments, const char* clock, Visits* printed) {
+WalkedStream Record(const std::string& arguments, const char* clock, Visits* printed) {
   const Directory archive;
   const auto run = RunWriter(archive.path(), arguments, clock);
   EXPECT_EQ(run.status, 0) << run.errors;
@@ -92,13 +92,13 @@ WalkedStream Run(const std::string& arguments, const char* clock, Visits* printe
 
 TEST(Budget, IsTheDefault) {
   Visits printed;
-  const WalkedStream stream = Run("leaf 10", "unset STIPPLE_CLOCK;", &printed);
+  const WalkedStream stream = Record("leaf 10", "unset STIPPLE_CLOCK;", &printed);
   EXPECT_STREQ(stream.header.settings, "clock=budget:5");
 }
 
 TEST(Budget, NothingIsDegradedBefore100000Visits) {
   Visits printed;
-  const WalkedStream stream = Run("leaf 99999", kBudget, &printed);
+  const WalkedStream stream = Record("leaf 99999", kBudget, &printed);
   EXPECT_TRUE(StepsOf(stream).empty());
   EXPECT_EQ(stream.threads.at(0).Events().size(), 2u * 99999);
 }
@@ -106,7 +106,7 @@ TEST(Budget, NothingIsDegradedBefore100000Visits) {
 TEST(Budget, OtherClocksNeverDegrade) {
   for (const char* clock : {"export STIPPLE_CLOCK=exact;", "export STIPPLE_CLOCK=sparse:8;"}) {
     Visits printed;
-    const WalkedStream stream = Run("leaf 400000", clock, &printed);
+    const WalkedStream stream = Record("leaf 400000", clock, &printed);
     EXPECT_TRUE(StepsOf(stream).empty());
     EXPECT_EQ(stream.threads.at(0).Events().size(), 800000u);
   }
@@ -117,7 +117,7 @@ TEST(Budget, VisitsAreCountedExactlyWhateverHappens) {
        {"leaf 1000000", "nest 400000", "counted 20000", "threads 50000", "jump 200000",
         "throw 150000", "switch 200000", "storm 200000", "exec 200000"}) {
     Visits printed;
-    const WalkedStream stream = Run(behaviour, kBudget, &printed);
+    const WalkedStream stream = Record(behaviour, kBudget, &printed);
     EXPECT_EQ(VisitsOf(stream), printed) << behaviour;
     EXPECT_FALSE(CountedEntersOf(stream).empty()) << behaviour;
   }
@@ -125,7 +125,7 @@ TEST(Budget, VisitsAreCountedExactlyWhateverHappens) {
 
 TEST(Budget, TheShortestGoFirstOneStepAtATime) {
   Visits printed;
-  const WalkedStream stream = Run("nest 400000", kBudget, &printed);
+  const WalkedStream stream = Record("nest 400000", kBudget, &printed);
   const auto steps = StepsOf(stream);
   ASSERT_GE(steps.size(), 2u);
   EXPECT_EQ(steps[0].region, kInner);
@@ -145,12 +145,12 @@ TEST(Budget, TheShortestGoFirstOneStepAtATime) {
 
 TEST(Budget, SamplesAreAStrideApartAndHaveTwoTimes) {
   Visits printed;
-  const WalkedStream stream = Run("leaf 2000000", kBudget, &printed);
+  const WalkedStream stream = Record("leaf 2000000", kBudget, &printed);
   const auto samples = CountedEntersOf(stream);
   ASSERT_GT(samples.size(), 1000u);
   for (std::size_t i = 1; i < samples.size(); ++i) {
     EXPECT_EQ(samples[i].purpose, CountedPurpose::kSample);
-    EXPECT_LE(samples[i].visits, 1150u);
+    EXPECT_LE(samples[i].visits, 1151u);
     EXPECT_GT(samples[i].ticks, samples[i - 1].ticks);
   }
   EXPECT_TRUE(IsBalanced(stream.threads.at(0).Events()));
@@ -158,7 +158,7 @@ TEST(Budget, SamplesAreAStrideApartAndHaveTwoTimes) {
 
 TEST(Budget, VisitsDirectlyInsideASampleAreTimedDeeperOnesAreNot) {
   Visits printed;
-  const WalkedStream stream = Run("counted 100000", "export STIPPLE_CLOCK=exact;", &printed);
+  const WalkedStream stream = Record("counted 100000", "export STIPPLE_CLOCK=exact;", &printed);
   struct Open {
     std::uint32_t region;
     CountedPurpose purpose;
@@ -167,7 +167,8 @@ TEST(Budget, VisitsDirectlyInsideASampleAreTimedDeeperOnesAreNot) {
   std::vector<Open> open;
   int samples = 0;
   const auto& thread = stream.threads.at(0);
-  auto counted = thread.counted_enters.begin();
+  const auto counted_enters = thread.CountedEnters();
+  auto counted = counted_enters.begin();
   for (const EventWord word : thread.Events()) {
     EXPECT_NE(stipple::TimeOf(word), 0u);
     if (!stipple::IsLeave(word)) {
@@ -194,7 +195,7 @@ TEST(Budget, VisitsDirectlyInsideASampleAreTimedDeeperOnesAreNot) {
 
 TEST(Budget, ARegionThatGrowsLongGetsItsClockBack) {
   Visits printed;
-  const WalkedStream stream = Run("grow 300000", kBudget, &printed);
+  const WalkedStream stream = Record("grow 300000", kBudget, &printed);
   const auto steps = StepsOf(stream);
   ASSERT_GE(steps.size(), 4u);
   EXPECT_EQ(steps.back().mode, RegionModeKind::kTimed);
@@ -208,7 +209,7 @@ TEST(Budget, ARegionThatGrowsLongGetsItsClockBack) {
 TEST(Budget, ASampleLeftByAJumpIsForgotten) {
   for (const char* behaviour : {"jump 400000", "switch 400000"}) {
     Visits printed;
-    const WalkedStream stream = Run(behaviour, kBudget, &printed);
+    const WalkedStream stream = Record(behaviour, kBudget, &printed);
     const auto enters = CountedEntersOf(stream);
     const auto inside = std::count_if(enters.begin(), enters.end(), [](const auto& enter) {
       return enter.purpose == CountedPurpose::kInside;
@@ -243,12 +244,12 @@ TEST(Budget, KilledItKnowsItsVisitsUpToTheLastSample) {
   EXPECT_TRUE(streams[0].problems.empty());
   const Visits visits = VisitsOf(streams[0]);
   EXPECT_LE(visits.at(kInner), 1000000u);
-  EXPECT_GT(visits.at(kInner), 1000000u - 1151);
+  EXPECT_GT(visits.at(kInner), 1000000u - 1152);
 }
 
 TEST(Budget, WhatEventsCostIsMeasuredAtTheBegin) {
   Visits printed;
-  const WalkedStream stream = Run("leaf 1", "export STIPPLE_CLOCK=exact;", &printed);
+  const WalkedStream stream = Record("leaf 1", "export STIPPLE_CLOCK=exact;", &printed);
   ASSERT_EQ(stream.calibrations.size(), 1u);
   const stipple::Calibration& c = stream.calibrations[0];
   for (const std::uint32_t figure : {c.timed_visit, c.timed_inner, c.sampled_visit, c.sampled_inner,

@@ -114,7 +114,9 @@ jmp_buf jump_point;
 /// Each outer visit is left by a jump from within; inner visits follow at about the same depth.
 void Jump(long rounds) {
   Nest(rounds);
-  for (volatile long i = 0; i < rounds; i = i + 1) {
+  volatile long left = rounds;
+  while (left > 0) {
+    left = left - 1;
     if (setjmp(jump_point) == 0)
       Visit(kOuter, [] { Visit(kMiddle, [] { longjmp(jump_point, 1); }); });
     Visit(kInner);
