@@ -63,7 +63,8 @@ void PrepareThreads();
 /// The offset of the slot that holds the control block's address from the thread pointer.
 std::int64_t ControlSlotOffset();
 
-/// Appends an event record (format.h), whether recording is switched on or off; its header is set here.
+/// Appends an event record (format.h), whether recording is switched on or off; its header is set
+/// here.
 void AppendRecord(const void* record, RecordKind kind, std::size_t bytes);
 
 /// The same, where signals are blocked and the thread is inside the runtime.

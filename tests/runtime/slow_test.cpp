@@ -91,14 +91,15 @@ TEST_F(Slow, EveryRegisterComesBack) {
   struct Row {
     std::uint32_t token, expected;
   };
-  const Row rows[] = {{id, id},
-                      {id | STIPPLE_LEAVE, id | STIPPLE_LEAVE},
-                      {id | STIPPLE_NO_CLOCK, id | STIPPLE_SAMPLED},  // the first visit is a sample
-                      {id | STIPPLE_SAMPLED | STIPPLE_LEAVE, id | STIPPLE_SAMPLED | STIPPLE_LEAVE},
-                      {id | STIPPLE_NO_CLOCK, id | STIPPLE_NO_CLOCK},
-                      {id | STIPPLE_NO_CLOCK | STIPPLE_LEAVE, id | STIPPLE_NO_CLOCK | STIPPLE_LEAVE},
-                      {id | STIPPLE_COUNT_ONLY, 0},
-                      {id | STIPPLE_COUNT_ONLY, 0}};
+  const Row rows[] = {
+      {id, id},
+      {id | STIPPLE_LEAVE, id | STIPPLE_LEAVE},
+      {id | STIPPLE_NO_CLOCK, id | STIPPLE_SAMPLED},  // the first visit is a sample
+      {id | STIPPLE_SAMPLED | STIPPLE_LEAVE, id | STIPPLE_SAMPLED | STIPPLE_LEAVE},
+      {id | STIPPLE_NO_CLOCK, id | STIPPLE_NO_CLOCK},
+      {id | STIPPLE_NO_CLOCK | STIPPLE_LEAVE, id | STIPPLE_NO_CLOCK | STIPPLE_LEAVE},
+      {id | STIPPLE_COUNT_ONLY, 0},
+      {id | STIPPLE_COUNT_ONLY, 0}};
   const std::uint32_t wide = __builtin_cpu_supports("avx") ? 1 : 0;
   for (const Row& row : rows)
     for (const bool exhausted : {true, false}) {

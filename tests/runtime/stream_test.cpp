@@ -71,7 +71,8 @@ TEST(Stream, SparseReadsTheClockOncePerN) {
 TEST(Stream, AnUnknownClockIsNamedAndExactUsed) {
   const Directory archive;
   const auto run = RunWriter(archive.path(), "return 10", "export STIPPLE_CLOCK=fast;");
-  EXPECT_EQ(run.errors, "stipple: clock 'fast' is unknown (exact, sparse:N, budget:P); using exact\n");
+  EXPECT_EQ(run.errors,
+            "stipple: clock 'fast' is unknown (exact, sparse:N, budget:P); using exact\n");
   EXPECT_STREQ(OnlyStream(archive).header.settings, "clock=exact");
 }
 
@@ -113,9 +114,9 @@ TEST(Stream, ModeBitsCountOrLeaveOutTheClock) {
       if (!stipple::IsLeave(word)) ++visits[static_cast<std::uint64_t>(stipple::RegionOf(word))];
     }
     // Two visits with the clock; of 5000 each four or five samples, and what is inside of them.
-    EXPECT_GE(thread.counted_enters.size(), 8u);
-    EXPECT_LE(thread.counted_enters.size(), 15u);
-    timed -= 2 * thread.counted_enters.size();
+    EXPECT_GE(thread.CountedEnters().size(), 8u);
+    EXPECT_LE(thread.CountedEnters().size(), 15u);
+    timed -= 2 * thread.CountedEnters().size();
   }
   EXPECT_EQ(timed, 2u);
   EXPECT_EQ(visits[kOuter], 1u + 10000);

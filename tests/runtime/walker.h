@@ -25,7 +25,8 @@ struct WalkedThread {
   std::uint32_t tid = 0;
   std::map<std::uint64_t, std::vector<EventWord>> chunks;
   std::map<RecordKind, int> records;
-  std::vector<stipple::CountedEnter> counted_enters;  // in Events() as enters with a time
+  /// By chunk; in Events() they are enters with a time.
+  std::map<std::uint64_t, std::vector<stipple::CountedEnter>> counted_enters;
   std::vector<stipple::RegionMode> steps;
   std::uint64_t lost = 0;
 
@@ -34,6 +35,12 @@ struct WalkedThread {
     for (const auto& [sequence, words] : chunks)
       events.insert(events.end(), words.begin(), words.end());
     return events;
+  }
+  std::vector<stipple::CountedEnter> CountedEnters() const {
+    std::vector<stipple::CountedEnter> enters;
+    for (const auto& [sequence, of_chunk] : counted_enters)
+      enters.insert(enters.end(), of_chunk.begin(), of_chunk.end());
+    return enters;
   }
 };
 
@@ -89,7 +96,7 @@ inline void WalkDefinition(const EventWord* word, WalkedStream& stream) {
   }
 }
 
-inline void WalkEvent(const EventWord* word, WalkedThread& thread, std::vector<EventWord>& words,
+inline void WalkEvent(const EventWord* word, std::uint64_t sequence, WalkedThread& thread,
                       WalkedStream& stream) {
   const RecordKind kind = stipple::KindOf(*word);
   ++thread.records[kind];
@@ -97,9 +104,10 @@ inline void WalkEvent(const EventWord* word, WalkedThread& thread, std::vector<E
     thread.steps.push_back(ReadRecord<stipple::RegionMode>(word));
   if (kind != RecordKind::kCountedEnter) return;
   const auto record = ReadRecord<stipple::CountedEnter>(word);
-  thread.counted_enters.push_back(record);
+  thread.counted_enters[sequence].push_back(record);
   stream.counts[record.region] += record.visits;
-  words.push_back(stipple::MakeEvent(record.ticks, false, stipple::RegionId{record.region}));
+  thread.chunks[sequence].push_back(
+      stipple::MakeEvent(record.ticks, false, stipple::RegionId{record.region}));
 }
 
 inline void WalkChunk(const stipple::ChunkHeader& header, const EventWord* word,
@@ -129,7 +137,7 @@ inline void WalkChunk(const stipple::ChunkHeader& header, const EventWord* word,
     }
     if (stipple::IsClosed(*word)) {
       if (events)
-        WalkEvent(word, thread, words, stream);
+        WalkEvent(word, header.sequence, thread, stream);
       else
         WalkDefinition(word, stream);
     }
