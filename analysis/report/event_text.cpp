@@ -40,6 +40,14 @@ std::string ThreadMessageText(const Trace& trace, const Process& p, const char* 
                      trace.channels()[p.ChannelOf(r.channel)], r.key);
 }
 
+std::string ModeText(const Trace& trace, const Process& p, const RegionMode& r) {
+  const char* how = r.mode == RegionModeKind::kTimed     ? "with all times"
+                    : r.mode == RegionModeKind::kNoClock ? "without times"
+                                                         : "by counting visits";
+  return fmt::format("budget: {} is recorded {}, {} visits seen",
+                     RegionOfProcess(trace, p, r.region).name, how, r.visits);
+}
+
 /// Records that a canonical text shows.
 std::string StableText(const Trace& trace, const Process& p, const EventWord* record) {
   switch (KindOf(*record)) {
@@ -102,6 +110,8 @@ std::string TimingText(const Trace& trace, const Process& p, const EventWord* re
       return fmt::format("probe {} from {} tag {}", r.bytes,
                          WorldText(trace, p, r.communicator, r.sender), r.tag);
     }
+    case RecordKind::kRegionMode:
+      return ModeText(trace, p, RecordAt<RegionMode>(record));
     case RecordKind::kTimeStamp:
       return "time stamp";
     case RecordKind::kJumpPoint:

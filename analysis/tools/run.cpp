@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 struct RunOptions {
   std::string archive;
   bool overwrite = false;
-  std::string clock = "exact";
+  std::string clock = "budget:5";
   std::string filter;  // empty: none
   bool paused = false;
   std::string max_bytes;  // empty: no limit
@@ -44,8 +44,10 @@ std::optional<RunOptions> ParseRun(const Arguments& arguments) {
   app.add_option("-o", options.archive, "the archive to make (default: PROGRAM.stipple)")
       ->type_name("A");
   app.add_flag("--overwrite", options.overwrite, "replace an archive that is there");
-  app.add_option("--clock", options.clock,
-                 "exact, or sparse:N: read the clock for one event in N (a power of two)")
+  app.add_option(
+         "--clock", options.clock,
+         "budget:P: slow the program by at most P percent (default: budget:5); exact: a time "
+         "for every event; sparse:N: for one event in N (a power of two)")
       ->type_name("MODE");
   app.add_option("--filter", options.filter,
                  "leave out functions: a filter file in Score-P's syntax")
@@ -63,8 +65,20 @@ std::optional<RunOptions> ParseRun(const Arguments& arguments) {
   return options;
 }
 
+/// Whether the text is "budget:P", P a number of percent above 0, perhaps with its sign.
+bool IsBudget(std::string_view clock) {
+  constexpr std::string_view kBudget = "budget:";
+  if (!clock.starts_with(kBudget)) return false;
+  clock.remove_prefix(kBudget.size());
+  if (clock.ends_with('%')) clock.remove_suffix(1);
+  double percent = 0;
+  const char* end = clock.data() + clock.size();
+  const auto [stop, error] = std::from_chars(clock.data(), end, percent, std::chars_format::fixed);
+  return error == std::errc() && stop == end && percent > 0 && percent <= 100;
+}
+
 void CheckClock(const std::string& clock) {
-  if (clock == "exact") return;
+  if (clock == "exact" || IsBudget(clock)) return;
   constexpr std::string_view kSparse = "sparse:";
   constexpr unsigned kMostSparse = 4096;
   unsigned n = 0;
@@ -75,7 +89,7 @@ void CheckClock(const std::string& clock) {
       return;
   }
   throw InputError("--clock", fmt::format("'{}' is unknown; known: exact, sparse:N with N a power "
-                                          "of two up to {}",
+                                          "of two up to {}, budget:P with P in percent up to 100",
                                           clock, kMostSparse));
 }
 
@@ -165,7 +179,8 @@ std::vector<std::string> Prepare(const RunOptions& options, const std::string& p
   const std::string all = own == nullptr || *own == '\0' ? preload : preload + ":" + own;
   // Asked before the runtime is preloaded: the launcher's version is not to be recorded.
   const char* list = std::getenv("OMPI_MCA_mca_base_env_list");
-  std::vector<std::string> variables = {"LD_PRELOAD", "STIPPLE_ARCHIVE", "STIPPLE_CLOCK", "ASAN_OPTIONS"};
+  std::vector<std::string> variables = {"LD_PRELOAD", "STIPPLE_ARCHIVE", "STIPPLE_CLOCK",
+                                        "ASAN_OPTIONS"};
   const auto set_or_unset = [&variables](const char* name, const std::string& value) {
     if (value.empty()) {
       unsetenv(name);

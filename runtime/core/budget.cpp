@@ -48,8 +48,7 @@ double TicksSince(const Process& process, Thread& thread, std::uint64_t ticks) {
     budget->ticks_per_ns =
         static_cast<double>(ticks - process.begin_ticks) /
         static_cast<double>(ReadClockNs(CLOCK_MONOTONIC_RAW) - process.begin_raw_ns);
-  const double used =
-      static_cast<double>(cpu_ns - thread.review_cpu_ns) * budget->ticks_per_ns;
+  const double used = static_cast<double>(cpu_ns - thread.review_cpu_ns) * budget->ticks_per_ns;
   if (used > 0 && used < passed) passed = used;
   thread.review_ticks = ticks;
   thread.review_cpu_ns = cpu_ns;
@@ -66,13 +65,17 @@ class Reading {
            static_cast<double>(samples_) * budget->sampled_visit;
   }
 
-  Reading() { ++budget->review; budget->touched = 0; }
+  Reading() {
+    ++budget->review;
+    budget->touched = 0;
+  }
 
   void Read(const EventWord* word, const EventWord* end) {
     while (word < end) {
       if (IsRecord(*word)) {
         const std::uint64_t words = WordsOf(*word);
-        if (!IsClosed(*word) || words == 0 || words > static_cast<std::uint64_t>(end - word)) return;
+        if (!IsClosed(*word) || words == 0 || words > static_cast<std::uint64_t>(end - word))
+          return;
         ReadRecord(word);
         word += words;
         continue;
@@ -84,12 +87,6 @@ class Reading {
   }
 
  private:
-  static constexpr std::uint32_t kMostDepth = 128;
-  struct Open {
-    std::uint32_t region;
-    std::uint64_t time;  // 0: none
-  };
-
   static RegionCost& CostOf(std::uint32_t region) {
     RegionCost& cost = budget->regions[region < kCountedRegions ? region : kCountedRegions];
     if (cost.review != budget->review) {
@@ -103,7 +100,7 @@ class Reading {
   }
 
   void Enter(std::uint32_t region, std::uint64_t time) {
-    if (depth_ < kMostDepth) open_[depth_] = {region, time};
+    if (depth_ < Budget::kMostDepth) budget->open[depth_] = {region, time};
     ++depth_;
   }
 
@@ -134,17 +131,17 @@ class Reading {
       return Enter(region, time);
     }
     if (depth_ == 0) return;
-    if (--depth_ >= kMostDepth || open_[depth_].region != region) return;
-    if (open_[depth_].time == 0 || time == 0) return;
+    if (--depth_ >= Budget::kMostDepth) return;
+    const Budget::Open& open = budget->open[depth_];
+    if (open.region != region || open.time == 0 || time == 0) return;
     ++cost.timed;
-    cost.timed_ticks += (time - open_[depth_].time) & kTimeMask;
+    cost.timed_ticks += (time - open.time) & kTimeMask;
   }
 
   std::uint64_t timed_ = 0;
   std::uint64_t untimed_ = 0;
   std::uint64_t samples_ = 0;
   std::uint32_t depth_ = 0;
-  Open open_[kMostDepth];
 };
 
 /// What a review would save by one step of a region.
@@ -233,9 +230,9 @@ void GiveBack(const Thread& thread) {
       left -= timed;
       cost.low_epochs = 0;
       ++cost.returns;
-      NoteStep(thread, region, ModeOf(region) == RegionModeKind::kCounted
-                                   ? RegionModeKind::kNoClock
-                                   : RegionModeKind::kTimed);
+      NoteStep(thread, region,
+               ModeOf(region) == RegionModeKind::kCounted ? RegionModeKind::kNoClock
+                                                          : RegionModeKind::kTimed);
     }
     if (ModeOf(region) != RegionModeKind::kTimed) budget->degraded_regions[kept++] = region;
   }
@@ -243,13 +240,14 @@ void GiveBack(const Thread& thread) {
   budget->epoch_ticks = budget->epoch_cost = 0;
 }
 
-/// A step of `thread`, taken off the list; false: there is none.
+/// The next step of `thread`, taken off the list; false: there is none.
 bool TakeStep(Process& process, const Thread& thread, RegionMode* record) {
   Holding holding(process.lock);
-  for (std::uint32_t i = budget->steps; i-- > 0;) {
+  for (std::uint32_t i = 0; i < budget->steps; ++i) {
     if (budget->step_list[i].thread != &thread) continue;
     *record = budget->step_list[i].record;
-    budget->step_list[i] = budget->step_list[--budget->steps];
+    --budget->steps;
+    for (; i < budget->steps; ++i) budget->step_list[i] = budget->step_list[i + 1];
     return true;
   }
   return false;
@@ -262,9 +260,14 @@ void BeginBudget(Thread& thread, const Calibration& calibration) {
   if (budget == nullptr) budget = static_cast<Budget*>(MapWipedMemory(sizeof(Budget)));
   if (budget == nullptr) return;
   budget->timed_event = kOverlap * calibration.timed_visit / 512;
-  budget->no_clock_event = calibration.no_clock_visit / 512.0;
+  budget->no_clock_event = kOverlap * calibration.no_clock_visit / 512;
   budget->counted_visit = calibration.counted_visit / 256.0;
   budget->sampled_visit = calibration.sampled_visit / 256.0;
+  // Whatever disturbed the measurement: each step saves something.
+  if (budget->no_clock_event < budget->counted_visit)
+    budget->no_clock_event = budget->counted_visit;
+  if (budget->timed_event < 2 * budget->no_clock_event)
+    budget->timed_event = 2 * budget->no_clock_event;
   for (std::uint32_t region = 1; region <= LastRegion() && region < kCountedRegions; ++region) {
     if (ModeOf(region) == RegionModeKind::kTimed) continue;
     if (budget->degraded < Budget::kMostDegraded)
@@ -322,7 +325,7 @@ void WriteSteps(Process& process, Thread& thread) {
   }
   if (!any) return;
   Holding holding(process.lock);
-  UpdateAll();
+  if (process.state.load(std::memory_order_relaxed) == State::kRecording) UpdateAll();
 }
 
 }  // namespace stipple

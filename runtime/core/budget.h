@@ -58,15 +58,21 @@ struct Budget {
     const Thread* thread;
   };
   Step step_list[kMostDegraded];
+  /// Open visits, while events are read again.
+  struct Open {
+    std::uint32_t region;
+    std::uint64_t time;  // 0: none
+  };
+  static constexpr std::uint32_t kMostDepth = 1024;
+  Open open[kMostDepth];
   RegionCost regions[kCountedRegions + 1];
 };
 
 extern Budget* budget;  // null: another mode
 
 inline bool IsReviewDue(const Thread& thread, std::uint64_t ticks) {
-  return budget != nullptr &&
-         static_cast<std::int64_t>(ticks - thread.review_ticks) >
-             static_cast<std::int64_t>(kReviewTicks);
+  return budget != nullptr && static_cast<std::int64_t>(ticks - thread.review_ticks) >
+                                  static_cast<std::int64_t>(kReviewTicks);
 }
 
 /// By a sample.

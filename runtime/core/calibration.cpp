@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A scratch thread with a chunk of ordinary memory takes this thread's place for a moment, and code
-// as the plugin inserts it (abi.h) runs against it: inline for a timed event, through slow.S for the
-// others. Each figure is a median, over batches for what a visit costs, over visits for what its
-// own times hold.
+// as the plugin inserts it (abi.h) runs against it: inline for a timed event, through slow.S for
+// the others. Each figure is a median, over batches for what a visit costs, over visits for what
+// its own times hold.
 #include "runtime/core/calibration.h"
 
 #include "runtime/core/clock.h"
@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kVisits = 64;
 constexpr int kBatches = 9;
-constexpr std::uint32_t kUnit = 256;  // of the figures, in a tick
+constexpr std::uint32_t kUnit = 256;                // of the figures, in a tick
 constexpr std::uint32_t kRegion = kCountedRegions;  // none that the program has
 
 /// What stands in for a thread and its chunk.

@@ -12,6 +12,7 @@
 #include "runtime/core/clock.h"
 #include "runtime/core/process.h"
 #include "runtime/core/recorder.h"
+#include "runtime/core/sample.h"
 #include "runtime/core/stream.h"
 
 extern "C" {
@@ -99,6 +100,7 @@ __attribute__((constructor(101))) void PrepareJumps() {
 }
 
 void Switch(std::uint64_t from, const ucontext_t& to) {
+  ForgetSamples(kWholeStack);
   if (!contexts_are_known || !stipple_recording()) return;
   NoteFeature(Feature::kStackSwitches);
   StackSwitch record{};
@@ -124,6 +126,7 @@ void stipple_note_jump_point(std::uint64_t stack) {
 }
 
 void stipple_note_unwound(std::uint64_t stack) {
+  stipple::ForgetSamples(stack);
   stipple::Unwound record{};
   record.stack = stack;
   stipple::Append(record);

@@ -46,6 +46,12 @@ void Arm(Counts& counts) {
   stipple_counts = sample ? nullptr : counts.words;
 }
 
+/// Closes visits whose frames have ended: a stack pointer is above theirs.
+void CloseAbove(Counts& counts, std::uint64_t stack) {
+  while (counts.open != 0 && stack > counts.visits[counts.open - 1].stack) --counts.open;
+  Arm(counts);
+}
+
 /// The visits to report with a sample; the word begins anew.
 std::uint64_t TakeVisits(Counts& counts, std::uint32_t region) {
   std::uint64_t& word = counts.words[region];
@@ -85,8 +91,7 @@ void Store(EventWord* place, EventWord word) {
 }  // namespace
 
 Choice Choose(Counts& counts, std::uint32_t region, std::uint64_t stack) {
-  while (counts.open != 0 && stack > counts.visits[counts.open - 1].stack) --counts.open;
-  Arm(counts);
+  CloseAbove(counts, stack);
   const bool room = counts.open < Counts::kMostOpen;
   if (room && stipple_counts == nullptr) return Choice::kInside;
   std::uint64_t& word = counts.words[region];
@@ -127,11 +132,10 @@ void CloseCounted(Counts& counts, std::uint32_t token) {
   Arm(counts);
 }
 
-void ForgetSamples() {
+void ForgetSamples(std::uint64_t stack) {
   Thread* thread = CountingThread();
   if (thread == nullptr) return;
-  CountsOf(*thread)->open = 0;
-  Arm(*CountsOf(*thread));
+  CloseAbove(*CountsOf(*thread), stack);
 }
 
 }  // namespace stipple

@@ -15,8 +15,8 @@
 // visit was left by a jump) is known by a later enter with a stack pointer above it.
 //
 // A signal handler may come between any two instructions of all this: words are changed by single
-// instructions, and whatever a handler does to the stack is undone when it ends or costs a visit its
-// place there, which is then an ordinary visit with two times.
+// instructions, and whatever a handler does to the stack is undone when it ends or costs a visit
+// its place there, which is then an ordinary visit with two times.
 #ifndef STIPPLE_RUNTIME_CORE_SAMPLE_H
 #define STIPPLE_RUNTIME_CORE_SAMPLE_H
 
@@ -41,7 +41,7 @@ struct Counts {
   static constexpr std::uint32_t kMostOpen = 31;
   std::uint64_t random;
   std::uint64_t visits_by_samples;  // that samples stood for since the thread's last review
-  std::uint32_t open;  // of `visits`, the outermost first
+  std::uint32_t open;               // of `visits`, the outermost first
   std::uint32_t reserved;
   OpenVisit visits[kMostOpen];
   std::uint64_t words[kCountedRegions + 1];  // the last is calibration's
@@ -77,8 +77,10 @@ std::uint32_t OpenCounted(Counts& counts, EventWord* place, std::uint32_t region
 /// Closes the visit with this token if it is still known.
 void CloseCounted(Counts& counts, std::uint32_t token);
 
-/// All open visits of this thread are no longer inside of each other: it changes stacks.
-void ForgetSamples();
+/// Visits of this thread whose stack pointer lies below `stack` are left by a jump; those on the
+/// whole stack, when it changes to another.
+void ForgetSamples(std::uint64_t stack);
+inline constexpr std::uint64_t kWholeStack = ~std::uint64_t{0};
 
 /// Visits without an event since the last sample, as a word has them; may be negative for a moment.
 inline std::int64_t CountIn(std::uint64_t word) {

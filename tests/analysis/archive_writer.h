@@ -110,15 +110,15 @@ class StreamWriter {
   /// An event whose clock was not read.
   void Unclocked(std::uint32_t region, bool leave) {
     const EventWord word = MakeEvent(0, leave, RegionId{region});
-    events_.back().Add(&word, 8, 0);
+    events_.back().Add(&word, 8, last_);
   }
-  void Word(EventWord word) { events_.back().Add(&word, 8, 0); }
+  void Word(EventWord word) { events_.back().Add(&word, 8, last_); }
   template <class Record>
   void Append(Record record) {
     record.header = MakeHeader(Record::kKind, sizeof(Record) / 8, true);
-    events_.back().Add(&record, sizeof(Record), record.ticks);
+    events_.back().Add(&record, sizeof(Record), last_ = record.ticks);
   }
-  void NewChunk(std::uint64_t ticks) { events_.back().Begin(ticks); }
+  void NewChunk(std::uint64_t ticks) { events_.back().Begin(last_ = ticks); }
   /// What follows belongs to a new thread.
   void NewThread() {
     events_.emplace_back(ChunkKind::kEvents, static_cast<std::uint32_t>(events_.size()),
@@ -146,10 +146,11 @@ class StreamWriter {
   }
   void Event(std::uint32_t region, bool leave, std::uint64_t ticks) {
     const EventWord word = MakeEvent(ticks, leave, RegionId{region});
-    events_.back().Add(&word, 8, ticks);
+    events_.back().Add(&word, 8, last_ = ticks);
   }
 
   double ticks_per_ns_;
+  std::uint64_t last_ = 0;  // where a chunk begins whose first word has no time
   ChunkWriter definitions_;
   std::vector<ChunkWriter> events_;
 };

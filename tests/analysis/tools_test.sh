@@ -24,7 +24,8 @@ for command in flags run info check print stats report; do expect 0 "$command --
 expect 2 "unknown command" "$stipple" nonsense; has err "known: flags run info"
 expect 2 "unknown option" "$stipple" info --nonsense x; has err "known: --json"
 expect 2 "missing archive" "$stipple" info none.stipple; has err "none.stipple"
-expect 2 "unknown clock" "$stipple" run --clock sundial -- true; has err "known: exact, sparse:N"
+expect 2 "unknown clock" "$stipple" run --clock sundial -- true; has err "known: exact, sparse:N.*budget:P"
+expect 2 "a budget of nothing" "$stipple" run --clock budget:0 -- true; has err "known: exact"
 expect 2 "later option" "$stipple" run --sample 100 -- true; has err "known"
 expect 2 "no command" "$stipple" run -o x; has err "no command"
 expect 2 "no compiler" "$stipple" flags nonsense

@@ -21,7 +21,7 @@ mkdir -p "$work"
 case $what in
 deep)
   "$@" -pthread "$sources/deep.c" -o "$work/app" || fail "does not compile"
-  "$stipple" run -o "$work/app.stipple" -- "$work/app" || fail "exit status $?"
+  "$stipple" run --clock exact -o "$work/app.stipple" -- "$work/app" || fail "exit status $?"
   "$stipple" check "$work/app.stipple" || fail "not sound"
   [[ $(calls Down) == 2000002 ]] || fail "calls of Down: $(calls Down)"
   "$stipple" print --canonical "$work/app.stipple" | awk '{ ++count[$1 " " $2] } END {
@@ -31,7 +31,7 @@ deep)
 dlopen)
   "$@" -fPIC -shared "$sources/dlopen_library.cpp" -o "$work/library.so" || fail "library does not compile"
   "$@" "$sources/dlopen.cpp" -o "$work/app" || fail "does not compile"
-  "$stipple" run -o "$work/app.stipple" -- "$work/app" "$work/library.so" 1000 >"$work/out" || fail "exit status $?"
+  "$stipple" run --clock exact -o "$work/app.stipple" -- "$work/app" "$work/library.so" 1000 >"$work/out" || fail "exit status $?"
   "$stipple" check "$work/app.stipple" || fail "not sound"
   [[ $(calls InLibrary) == 1000 ]] || fail "calls of InLibrary: $(calls InLibrary)"
   # 6000 events and their chunks; three definitions more each time would be 200 KB.
@@ -40,7 +40,7 @@ dlopen)
   ;;
 silence)
   "$@" -pthread "$sources/silent.c" -o "$work/app" || fail "does not compile"
-  "$stipple" run -o "$work/app.stipple" -- "$work/app" || fail "exit status $?"
+  "$stipple" run --clock exact -o "$work/app.stipple" -- "$work/app" || fail "exit status $?"
   "$stipple" check "$work/app.stipple" || fail "not sound"
   for function in RestSeldom RestAfterBurst; do
     "$stipple" stats "$work/app.stipple" --table profile --format csv |

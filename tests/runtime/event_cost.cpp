@@ -75,6 +75,7 @@ double Median(std::vector<double> values) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  setenv("STIPPLE_CLOCK", "exact", 1);
   const long events = argc > 1 ? std::atol(argv[1]) : 100'000'000;
   const int rounds = argc > 2 ? std::atoi(argv[2]) : 21;
   const long calls = events / rounds / 2;

@@ -91,14 +91,15 @@ TEST_F(Slow, EveryRegisterComesBack) {
   struct Row {
     std::uint32_t token, expected;
   };
-  const Row rows[] = {{id, id},
-                      {id | STIPPLE_LEAVE, id | STIPPLE_LEAVE},
-                      {id | STIPPLE_NO_CLOCK, id | STIPPLE_SAMPLED},  // the first visit is a sample
-                      {id | STIPPLE_SAMPLED | STIPPLE_LEAVE, id | STIPPLE_SAMPLED | STIPPLE_LEAVE},
-                      {id | STIPPLE_NO_CLOCK, id | STIPPLE_NO_CLOCK},
-                      {id | STIPPLE_NO_CLOCK | STIPPLE_LEAVE, id | STIPPLE_NO_CLOCK | STIPPLE_LEAVE},
-                      {id | STIPPLE_COUNT_ONLY, 0},
-                      {id | STIPPLE_COUNT_ONLY, 0}};
+  const Row rows[] = {
+      {id, id},
+      {id | STIPPLE_LEAVE, id | STIPPLE_LEAVE},
+      {id | STIPPLE_NO_CLOCK, id | STIPPLE_SAMPLED},  // the first visit is a sample
+      {id | STIPPLE_SAMPLED | STIPPLE_LEAVE, id | STIPPLE_SAMPLED | STIPPLE_LEAVE},
+      {id | STIPPLE_NO_CLOCK, id | STIPPLE_NO_CLOCK},
+      {id | STIPPLE_NO_CLOCK | STIPPLE_LEAVE, id | STIPPLE_NO_CLOCK | STIPPLE_LEAVE},
+      {id | STIPPLE_COUNT_ONLY, 0},
+      {id | STIPPLE_COUNT_ONLY, 0}};
   const std::uint32_t wide = __builtin_cpu_supports("avx") ? 1 : 0;
   for (const Row& row : rows)
     for (const bool exhausted : {true, false}) {
@@ -109,7 +110,9 @@ TEST_F(Slow, EveryRegisterComesBack) {
         bytes[i] = static_cast<unsigned char>(i * 37 + row.token + 11);
       const long double number = 1.25L;
       std::memcpy(from.x87, &number, 10);
-      EXPECT_EQ(slow_registers(object_->dso.slow, row.token, &from, &to, wide), row.expected);
+      constexpr std::uint32_t kNumber = ~std::uint32_t{0} << STIPPLE_SAMPLED_SHIFT;
+      EXPECT_EQ(slow_registers(object_->dso.slow, row.token, &from, &to, wide) & ~kNumber,
+                row.expected);
       for (int i = 0; i < 13; ++i) EXPECT_EQ(to.general[i], from.general[i]) << i;
       const std::size_t width = wide != 0 ? 32 : 16;
       for (int i = 0; i < 16; ++i)

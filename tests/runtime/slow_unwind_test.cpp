@@ -119,7 +119,7 @@ TEST(Slow, UnwindsAtEveryInstruction) {
   SteppedEvent(dso, 1 | STIPPLE_COUNT_ONLY);
   EXPECT_EQ(calls, 3);
   EXPECT_EQ(slots[0], 1u);
-  EXPECT_EQ(counts[1], 0xffffffff00000000);  // both of the two left, one of them wrote an event
+  EXPECT_EQ(counts[1], 0xffffffff00000000);   // both of the two left, one of them wrote an event
   SteppedEvent(dso, 1 | STIPPLE_COUNT_ONLY);  // due
   SteppedEvent(dso, 1 | STIPPLE_COUNT_ONLY);
   EXPECT_EQ(samples, 6);

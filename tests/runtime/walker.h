@@ -25,6 +25,9 @@ struct WalkedThread {
   std::uint32_t tid = 0;
   std::map<std::uint64_t, std::vector<EventWord>> chunks;
   std::map<RecordKind, int> records;
+  /// By chunk; in Events() they are enters with a time.
+  std::map<std::uint64_t, std::vector<stipple::CountedEnter>> counted_enters;
+  std::vector<stipple::RegionMode> steps;
   std::uint64_t lost = 0;
 
   std::vector<EventWord> Events() const {
@@ -32,6 +35,12 @@ struct WalkedThread {
     for (const auto& [sequence, words] : chunks)
       events.insert(events.end(), words.begin(), words.end());
     return events;
+  }
+  std::vector<stipple::CountedEnter> CountedEnters() const {
+    std::vector<stipple::CountedEnter> enters;
+    for (const auto& [sequence, of_chunk] : counted_enters)
+      enters.insert(enters.end(), of_chunk.begin(), of_chunk.end());
+    return enters;
   }
 };
 
@@ -41,7 +50,8 @@ struct WalkedStream {
   std::map<RecordKind, int> definitions;
   std::map<std::uint32_t, std::string> regions;
   std::map<std::uint32_t, std::string> names;
-  std::map<std::uint32_t, std::uint64_t> counts;
+  std::map<std::uint32_t, std::uint64_t> counts;  // visits without an event, by region
+  std::vector<stipple::Calibration> calibrations;
   std::vector<stipple::ProcessEnd> ends;
   std::vector<stipple::Loss> losses;
   std::vector<stipple::Filtered> filters;
@@ -77,11 +87,27 @@ inline void WalkDefinition(const EventWord* word, WalkedStream& stream) {
     stream.losses.push_back(ReadRecord<stipple::Loss>(word));
   } else if (kind == RecordKind::kFiltered) {
     stream.filters.push_back(ReadRecord<stipple::Filtered>(word));
+  } else if (kind == RecordKind::kCalibration) {
+    stream.calibrations.push_back(ReadRecord<stipple::Calibration>(word));
   } else if (kind == RecordKind::kVisitCounts) {
     const auto record = ReadRecord<stipple::VisitCounts>(word);
     for (std::uint64_t i = 0; i < record.entries; ++i)
       stream.counts[static_cast<std::uint32_t>(word[2 + 2 * i])] += word[3 + 2 * i];
   }
+}
+
+inline void WalkEvent(const EventWord* word, std::uint64_t sequence, WalkedThread& thread,
+                      WalkedStream& stream) {
+  const RecordKind kind = stipple::KindOf(*word);
+  ++thread.records[kind];
+  if (kind == RecordKind::kRegionMode)
+    thread.steps.push_back(ReadRecord<stipple::RegionMode>(word));
+  if (kind != RecordKind::kCountedEnter) return;
+  const auto record = ReadRecord<stipple::CountedEnter>(word);
+  thread.counted_enters[sequence].push_back(record);
+  stream.counts[record.region] += record.visits;
+  thread.chunks[sequence].push_back(
+      stipple::MakeEvent(record.ticks, false, stipple::RegionId{record.region}));
 }
 
 inline void WalkChunk(const stipple::ChunkHeader& header, const EventWord* word,
@@ -111,7 +137,7 @@ inline void WalkChunk(const stipple::ChunkHeader& header, const EventWord* word,
     }
     if (stipple::IsClosed(*word)) {
       if (events)
-        ++thread.records[stipple::KindOf(*word)];
+        WalkEvent(word, header.sequence, thread, stream);
       else
         WalkDefinition(word, stream);
     }

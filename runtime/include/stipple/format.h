@@ -433,14 +433,17 @@ enum class CountedPurpose : std::uint32_t {
 };
 
 /// Enters a region whose mode is not kTimed, with a time, read with the pipeline drained. Its leave
-/// is an event like any other.
+/// is an event like any other. Samples are 1024 to 1151 visits apart, by chance. Of one that a jump
+/// or a change of stacks interrupts, what is inside may be missing.
 struct CountedEnter {
   static constexpr RecordKind kKind = RecordKind::kCountedEnter;
   EventWord header;
   std::uint64_t ticks;
   std::uint32_t region;
   CountedPurpose purpose;
-  std::uint64_t visits;  // of the region by this thread, without any event, since its last sample
+  // Of the region by this thread, without any event, since its last sample. 0 for kInside. All of
+  // these, the entries of VisitCounts and the enters are the region's visits.
+  std::uint64_t visits;
 };
 static_assert(sizeof(CountedEnter) == 32);
 

@@ -10,7 +10,7 @@ for _ in 1 2 3 4 5; do
   mpirun --bind-to core --oversubscribe -n 2 "$2" | sed 's/^/bare   /' >> "$work/lines"
   rm -rf "$work/run.stipple"
   mkdir "$work/run.stipple"
-  mpirun --bind-to core --oversubscribe -n 2 -x STIPPLE_ARCHIVE="$work/run.stipple" \
+  mpirun --bind-to core --oversubscribe -n 2 -x STIPPLE_ARCHIVE="$work/run.stipple" -x STIPPLE_CLOCK=exact \
     -x LD_PRELOAD="$1/libstipple.so:$1/libstipple-mpi.so" "$2" | sed 's/^/traced /' >> "$work/lines"
 done
 # The run with the least p10 of each kind: other work on the machine only ever adds.
