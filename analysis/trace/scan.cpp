@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "analysis/trace/chunk_code.h"
+
 namespace stipple {
 namespace {
 
@@ -45,6 +47,17 @@ constexpr std::uint64_t BytesOf(RecordKind kind) {
 }
 
 }  // namespace
+
+void ChunkWords::Decode(const Chunk& stored, ScanCounts& counts) {
+  thread_local ChunkDecoder decoder;  // larger than the words, and one is enough for many scans
+  words_.resize(stored.coded_words);
+  chunk_ = stored;
+  chunk_.begin = chunk_.end = words_.data();
+  if (decoder.Decode(stored.code, words_))
+    chunk_.end += stored.coded_words;
+  else
+    ++counts.damaged_chunks;
+}
 
 std::uint64_t SoundRecordWords(const EventWord* word, const EventWord* end) {
   const std::uint64_t words = WordsOf(*word);

@@ -232,6 +232,7 @@ Trace Trace::Open(const std::string& path, ReadMeter* meter) {
   }
   trace.health_.Add(Defect::kMissingRank, "",
                     static_cast<std::uint64_t>(std::ranges::count(seen, false)));
+  trace.health_.ForgiveUnfinished();
   return trace;
 }
 
@@ -316,6 +317,7 @@ TraceHealth Trace::Health() const {
     health.Add(Defect::kOpenRecord, where, counts.open_records);
     health.Add(Defect::kBadRecord, where, counts.bad_records);
     health.Add(Defect::kUndefinedRegion, where, counts.undefined_regions);
+    health.Add(Defect::kDamagedChunk, where, counts.damaged_chunks);
   }
   return health;
 }
