@@ -27,9 +27,9 @@ std::string Headline(const std::string& archive, const CompactResult& result) {
   std::string text = fmt::format("{}: {} before, {} after", archive, Bytes(result.bytes_before),
                                  Bytes(result.bytes_after));
   if (result.events != 0)
-    text += fmt::format("; {}, {:.2f} bytes each", FormatCount(result.events, "event"),
-                        static_cast<double>(result.event_bytes) /
-                            static_cast<double>(result.events));
+    text +=
+        fmt::format("; {}, {:.2f} bytes each", FormatCount(result.events, "event"),
+                    static_cast<double>(result.event_bytes) / static_cast<double>(result.events));
   return text + "\n";
 }
 
@@ -66,8 +66,8 @@ int RunCompact(const Arguments& arguments) {
     throw InputError(archive, "is not an archive (no such directory)");
   if (!output.empty()) MakeDirectory(output);
   ProgressLine progress;
-  const CompactResult result = CompactArchive(archive, output.empty() ? archive : output,
-                                              StopOnSignals(), progress.meter());
+  const CompactResult result =
+      CompactArchive(archive, output.empty() ? archive : output, StopOnSignals(), progress.meter());
   progress.Stop();
   WriteOut(Headline(output.empty() ? archive : output, result));
   SayLeftAlone(result);

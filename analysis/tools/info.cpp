@@ -110,10 +110,10 @@ std::string ClockText(const Analysis& info) {
 std::string InfoText(const Analysis& info) {
   const Trace& trace = info.trace;
   const auto rank_count = static_cast<std::uint64_t>(trace.RankCount());
-  std::string text =
-      fmt::format("{}: {} on {} in {}, {}{}\n", trace.path(),
-                  FormatCount(trace.EventCount(), "event"), FormatCount(rank_count, "rank"),
-                  FormatSeconds(Seconds(trace.SpanNs())), LossText(info.health), RunningText(trace));
+  std::string text = fmt::format(
+      "{}: {} on {} in {}, {}{}\n", trace.path(), FormatCount(trace.EventCount(), "event"),
+      FormatCount(rank_count, "rank"), FormatSeconds(Seconds(trace.SpanNs())),
+      LossText(info.health), RunningText(trace));
   text += fmt::format("program    {}\n", trace.Program());
   text += fmt::format("processes  {}\n", trace.processes().size());
   text += fmt::format("threads    {}\n", trace.locations().size());

@@ -95,8 +95,8 @@ bool LooksLikeArchive(const fs::path& path) {
   std::error_code error;
   if (!fs::is_directory(fs::symlink_status(path, error))) return false;
   for (const fs::directory_entry& entry : fs::directory_iterator(path, error))
-    if (!entry.is_regular_file() || (entry.path().extension() != ".stream" &&
-                                     entry.path().extension() != kUnfinishedStream))
+    if (!entry.is_regular_file() ||
+        (entry.path().extension() != ".stream" && entry.path().extension() != kUnfinishedStream))
       return false;
   return !error;
 }
@@ -146,7 +146,8 @@ std::vector<std::string> Prepare(const RunOptions& options, const std::string& p
   const std::string all = own == nullptr || *own == '\0' ? preload : preload + ":" + own;
   // Asked before the runtime is preloaded: the launcher's version is not to be recorded.
   const char* list = std::getenv("OMPI_MCA_mca_base_env_list");
-  std::vector<std::string> variables = {"LD_PRELOAD", "STIPPLE_ARCHIVE", "STIPPLE_CLOCK", "ASAN_OPTIONS"};
+  std::vector<std::string> variables = {"LD_PRELOAD", "STIPPLE_ARCHIVE", "STIPPLE_CLOCK",
+                                        "ASAN_OPTIONS"};
   const auto set_or_unset = [&variables](const char* name, const std::string& value) {
     if (value.empty()) {
       unsetenv(name);
@@ -187,8 +188,7 @@ std::uint64_t BytesOnDisk(const fs::path& path) {
 void Compact(const std::string& archive) {
   try {
     ProgressLine progress;
-    CompactResult result =
-        CompactArchive(archive, archive, StopOnSignals(), progress.meter());
+    CompactResult result = CompactArchive(archive, archive, StopOnSignals(), progress.meter());
     progress.Stop();
     SayLeftAlone(result);
   } catch (const std::exception& e) {

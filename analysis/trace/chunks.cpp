@@ -114,15 +114,14 @@ bool ReadLiveHeader(Bytes file, LiveChunk& chunk) {
     if (words[0] != kChunkMagic) return false;
     if (Load(at) != kChunkMagic || Load(at + kSequence) != words[kSequence]) continue;
     std::memcpy(&chunk.header, words.data(), sizeof(chunk.header));
-    if (IsChunk(chunk.header, kGranules) &&
-        chunk.offset + chunk.header.bytes <= file.size())
+    if (IsChunk(chunk.header, kGranules) && chunk.offset + chunk.header.bytes <= file.size())
       return true;
   }
   return false;
 }
 
-/// Copies what is committed in a chunk that its thread may be filling. False: the thread has gone on
-/// to use the chunk's place for the next one, and a copy of this one stands elsewhere, complete.
+/// Copies what is committed in a chunk that its thread may be filling. False: the thread has gone
+/// on to use the chunk's place for the next one, and a copy of this one stands elsewhere, complete.
 bool CopyLive(Bytes file, const LiveChunk& chunk, std::vector<EventWord>& words) {
   const EventWord* at = WordsAt(file, chunk.offset + sizeof(ChunkHeader));
   const EventWord* const end = WordsAt(file, chunk.offset + chunk.header.bytes);
@@ -157,16 +156,16 @@ std::vector<std::size_t> PlacesOf(Bytes file) {
 /// The last one is copied.
 bool TakeThread(Stream& stream, std::vector<LiveChunk>& chunks, FoundChunks& found) {
   const Bytes file = stream.file.bytes();
-  std::ranges::sort(chunks, {}, [](const LiveChunk& c) {
-    return std::pair(c.header.sequence, c.offset);
-  });
+  std::ranges::sort(chunks, {},
+                    [](const LiveChunk& c) { return std::pair(c.header.sequence, c.offset); });
   std::size_t last = 0;  // first of those with the highest sequence before a gap
   for (std::size_t i = 1; i < chunks.size(); ++i) {
     const std::uint64_t step = chunks[i].header.sequence - chunks[i - 1].header.sequence;
     if (step > 1) chunks.resize(i);
     if (step == 1) last = i;
   }
-  for (std::size_t i = 0; i < last; ++i) Add(found, ChunkAt(file, chunks[i].offset, chunks[i].header));
+  for (std::size_t i = 0; i < last; ++i)
+    Add(found, ChunkAt(file, chunks[i].offset, chunks[i].header));
   for (std::size_t i = last; i < chunks.size(); ++i) {
     std::vector<EventWord> words;
     Chunk chunk = ChunkAt(file, chunks[i].offset, chunks[i].header);
@@ -182,7 +181,8 @@ bool TakeThread(Stream& stream, std::vector<LiveChunk>& chunks, FoundChunks& fou
 
 }  // namespace
 
-// Walks the places. One that is no chunk's begin is skipped; a whole granule of zeros was never used.
+// Walks the places. One that is no chunk's begin is skipped; a whole granule of zeros was never
+// used.
 FoundChunks FindChunks(Stream& stream) {
   const Bytes file = stream.file.bytes();
   const bool compacted =
@@ -216,7 +216,8 @@ FoundChunks FindChunks(Stream& stream) {
     if (offset + h.bytes > file.size()) stream.health.Add(Defect::kTruncatedFile, stream.file_name);
     offset += h.bytes;
   }
-  if (compacted && offset < file.size()) stream.health.Add(Defect::kTruncatedFile, stream.file_name);
+  if (compacted && offset < file.size())
+    stream.health.Add(Defect::kTruncatedFile, stream.file_name);
   return found;
 }
 

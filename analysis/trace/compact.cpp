@@ -5,7 +5,8 @@
 // word by word, or would not become smaller, is copied as it is.
 //
 // A stream with damaged headers or chunks is left alone: its reader has to guess, and a compacted
-// guess could not be told from the truth. Words inside a chunk may be what they will, they come back.
+// guess could not be told from the truth. Words inside a chunk may be what they will, they come
+// back.
 #include "analysis/trace/compact.h"
 
 #include <fcntl.h>
@@ -129,8 +130,8 @@ NewChunk MakeChunk(const Chunk& chunk) {
   ChunkHeader h = HeaderOf(chunk);
   const std::size_t bytes = sizeof(h) + sizeof(CompactedChunk) + coded.frame.size();
   h.kind = ChunkKind::kCompacted;
-  h.bytes = static_cast<std::uint32_t>((bytes + kCompactedAlign - 1) / kCompactedAlign *
-                                       kCompactedAlign);
+  h.bytes =
+      static_cast<std::uint32_t>((bytes + kCompactedAlign - 1) / kCompactedAlign * kCompactedAlign);
   const CompactedChunk compacted{words.size(), coded.frame.size()};
   NewChunk made{std::string(reinterpret_cast<const char*>(&h), sizeof(h)), coded.events};
   made.bytes.append(reinterpret_cast<const char*>(&compacted), sizeof(compacted));
@@ -141,8 +142,8 @@ NewChunk MakeChunk(const Chunk& chunk) {
 
 /// Why the stream must stay as it is; null: it need not.
 const char* Obstacle(const Stream& stream, Writer writer, bool in_place) {
-  constexpr std::array kDamage = {Defect::kBadFileHeader, Defect::kTruncatedFile,
-                                  Defect::kBadChunk, Defect::kBadTime};
+  constexpr std::array kDamage = {Defect::kBadFileHeader, Defect::kTruncatedFile, Defect::kBadChunk,
+                                  Defect::kBadTime};
   if (stream.running || (in_place && writer == Writer::kThere))
     return "its process is still running";
   if (in_place && writer == Writer::kUnknown && !stream.end)
@@ -319,8 +320,7 @@ CompactResult CompactArchive(const std::string& from, const std::string& to,
     result.event_bytes += w.compacted ? w.bytes_after : 0;
     result.streams += w.compacted ? 1 : 0;
     result.stopped = result.stopped || w.stopped;
-    if (!w.why_not.empty())
-      result.left_alone.push_back({fs::path(w.from).filename(), w.why_not});
+    if (!w.why_not.empty()) result.left_alone.push_back({fs::path(w.from).filename(), w.why_not});
   }
   return result;
 }

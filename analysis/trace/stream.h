@@ -150,7 +150,7 @@ struct Stream {
   std::uint64_t lost = 0;  // events that the process could not record
   std::vector<ClockPair> clock_pairs;
   std::vector<Chunk> definitions;
-  bool running = false;  // when it was read; then `end` is not set
+  bool running = false;                       // when it was read; then `end` is not set
   std::deque<std::vector<EventWord>> copies;  // of chunks that its process still writes
 
   TraceHealth health;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The kernel knows who has a file open for writing, by descriptor or by mapping: it grants a read
 // lease only if nobody has. That holds whatever became of process numbers (used again, or of a
-// container that sees others), and ends with the process, however it ends. The lease is given back at
-// once. Where there are no leases (network file systems, another user's file) the process of the
+// container that sees others), and ends with the process, however it ends. The lease is given back
+// at once. Where there are no leases (network file systems, another user's file) the process of the
 // stream's name is asked for, if it is one of this computer.
 #include "analysis/trace/writer.h"
 

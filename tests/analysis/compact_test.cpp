@@ -230,8 +230,8 @@ TEST(Compact, StoppedOrHinderedItLeavesTheStreamAndNothingElse) {
   EXPECT_TRUE(CompactArchive(archive.path(), archive.path(), stop, nullptr).stopped);
   // A folder of the name that the new file would have.
   std::filesystem::create_directory(path + kUnfinishedStream);
-  EXPECT_EQ(
-      CompactArchive(archive.path(), archive.path(), kNeverStop, nullptr).left_alone.size(), 1U);
+  EXPECT_EQ(CompactArchive(archive.path(), archive.path(), kNeverStop, nullptr).left_alone.size(),
+            1U);
   std::filesystem::remove(path + kUnfinishedStream);
   EXPECT_EQ(BytesOf(path), before);
   // What a killed compaction left is in nobody's way.
