@@ -213,12 +213,13 @@ void Summarise(const RunOptions& options, int status) {
   }
   const Trace trace = Trace::Open(archive);
   const TraceHealth health = trace.Health();
-  fmt::print(stderr, "stipple: recorded {} in {} of {}: {}, {}{}\n",
+  fmt::print(stderr, "stipple: recorded {} in {} of {}: {}, {}{}{}\n",
              FormatCount(trace.EventCount(), "event"),
              fmt::format("{} process{}", trace.processes().size(),
                          trace.processes().size() == 1 ? "" : "es"),
              FormatCount(static_cast<std::uint64_t>(trace.RankCount()), "rank"),
              FormatBytes(static_cast<double>(BytesOnDisk(archive))), LossText(health),
+             RunningText(trace),
              health.Sound() ? "" : fmt::format(" (problems: stipple check {})", archive));
   for (const std::string& text : LeftOutTexts(trace)) fmt::print(stderr, "stipple: {}\n", text);
   fmt::print(stderr, "stipple: next: stipple report {} -o {}.html\n", archive,

@@ -24,11 +24,11 @@ record() {
   local is=$?
   [ $is = "$status" ] || fail "$1: exit $is, not $status"
 }
-text() { "$stipple" print "$1" >"$2" 2>"$2.err"; "$stipple" print --canonical "$1" >>"$2" 2>&1; "$stipple" check "$1" >>"$2"; }
+text() { "$stipple" print "$1" >"$2" 2>"$2.err"; "$stipple" check "$1" >>"$2"; }
 bytes() { cat "$1"/*.stream | wc -c; }
 library=$(dirname "$(dirname "$stipple")")/lib/stipple/libstipple.so
 
-for row in "recursion.c 0 18" "threads.c 0" "longjmp.c 0" "fork.c 0" "signals.c 0" "ends.c 3"; do
+for row in "recursion.c 0 18" "threads.c 0" "longjmp.c 0" "fork.c 0" "signals.c 0" "ends.c 0"; do
   # shellcheck disable=SC2086
   record $row || continue
   text raw.stipple before
@@ -50,7 +50,7 @@ before=$(bytes raw.stipple)
 for round in $(seq 20); do
   rm -rf again.stipple && cp -r raw.stipple again.stipple
   "$stipple" compact again.stipple >/dev/null 2>&1 &
-  sleep "0.0$((RANDOM % 10))"
+  sleep "0.0$((RANDOM % 4))$((RANDOM % 10))"
   kill -KILL $! 2>/dev/null
   wait $! 2>/dev/null
   text again.stipple after

@@ -119,7 +119,8 @@ TEST(ChunkCode, DamagedFramesAreRefusedOrHarmless) {
     bad[random() % bad.size()] ^= static_cast<char>(1U << (random() % 8));
     if (round % 7 == 0) bad.resize(random() % bad.size());
     Words back(words.size());
-    if (decoder.Decode(std::as_bytes(std::span(bad)), back)) EXPECT_EQ(back, words);
+    const bool decoded = decoder.Decode(std::as_bytes(std::span(bad)), back);
+    EXPECT_TRUE(!decoded || back == words);
   }
 }
 
