@@ -38,6 +38,8 @@ std::vector<std::string> FactsOf(const Analysis& analysis) {
   if (const std::size_t jobs = JobsOf(trace.processes()).size(); jobs > 1)
     facts.push_back(FormatCount(jobs, "MPI job"));
   facts.push_back(LossText(analysis.health));
+  if (const std::string running = RunningText(trace); !running.empty())
+    facts.push_back(running.substr(2));
   return facts;
 }
 
@@ -70,7 +72,8 @@ ReportInput ReportInputOf(const Analysis& analysis, std::size_t columns) {
   input.profile = ProfileTable(analysis, all, false);
   input.waits = WaitsTable(trace, blames);
   for (std::string& text : LeftOutTexts(trace)) input.health.push_back(std::move(text));
-  for (const Problem& p : analysis.health.problems()) input.health.push_back(TextOf(p));
+  for (const Problem& p : analysis.health.problems())
+    if (p.defect != Defect::kStillRunning) input.health.push_back(TextOf(p));
   return input;
 }
 

@@ -221,4 +221,10 @@ std::string LossText(const TraceHealth& health) {
                    : "at least " + FormatCount(lost, "event") + " lost";
 }
 
+std::string RunningText(const Trace& trace) {
+  if (!trace.header_health().Running()) return "";
+  return ", still running: recorded until " +
+         FormatSeconds(static_cast<double>(trace.SpanNs()) * 1e-9);
+}
+
 }  // namespace stipple

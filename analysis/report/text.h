@@ -7,6 +7,7 @@
 
 #include "analysis/stats/table.h"
 #include "analysis/trace/health.h"
+#include "analysis/trace/trace.h"
 
 namespace stipple {
 
@@ -19,6 +20,9 @@ std::string TableJson(const Table& table);
 
 /// "no event lost", "3 events lost", "an unknown number of events lost"
 std::string LossText(const TraceHealth& health);
+
+/// ", still running: recorded until 1.23 s"; empty when nothing of it runs any more.
+std::string RunningText(const Trace& trace);
 
 }  // namespace stipple
 

@@ -55,6 +55,7 @@ Analysis::Analysis(const Trace& of) : trace(of), profiles(of.locations().size())
     health.Add(Defect::kEnterWithoutLeave, where, enters_without_leave[l.index]);
   }
   health.Add(mpi.health);
+  health.ForgiveUnfinished();
 }
 
 }  // namespace stipple

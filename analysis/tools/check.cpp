@@ -2,6 +2,7 @@
 // stipple check: proves an archive sound.
 #include <fmt/format.h>
 
+#include "analysis/report/text.h"
 #include "analysis/stats/analysis.h"
 #include "analysis/stats/number.h"
 #include "analysis/tools/command.h"
@@ -22,8 +23,9 @@ int RunCheck(const Arguments& arguments) {
   std::string text;
   for (const Problem& p : health.problems()) text += TextOf(p) + "\n";
   if (health.Sound())
-    text = fmt::format("{}: sound, {} of {}\n", archive, FormatCount(trace.EventCount(), "event"),
-                       FormatCount(static_cast<std::uint64_t>(trace.RankCount()), "rank"));
+    text = fmt::format("{}: sound, {} of {}{}\n", archive, FormatCount(trace.EventCount(), "event"),
+                       FormatCount(static_cast<std::uint64_t>(trace.RankCount()), "rank"),
+                       RunningText(trace));
   WriteOut(text);
   return health.Sound() ? 0 : 1;
 }

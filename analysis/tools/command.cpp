@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "analysis/report/left_out.h"
+#include "analysis/report/text.h"
 #include "analysis/trace/input_error.h"
 #include "analysis/trace/ranks.h"
 
@@ -74,8 +75,11 @@ void WarnOfProblems(const Trace& trace, const TraceHealth& health) {
     fmt::print(stderr, "stipple: MPI job {} of {}: {}, ranks {} to {}\n", i + 1, jobs.size(),
                jobs[i].program, jobs[i].first_rank, jobs[i].first_rank + jobs[i].rank_count - 1);
   for (const std::string& text : LeftOutTexts(trace)) fmt::print(stderr, "stipple: {}\n", text);
+  if (const std::string running = RunningText(trace); !running.empty())
+    fmt::print(stderr, "stipple: {}\n", running.substr(2));
   constexpr std::size_t kMost = 5;
-  const std::vector<Problem>& problems = health.problems();
+  std::vector<Problem> problems = health.problems();
+  std::erase_if(problems, [](const Problem& p) { return p.defect == Defect::kStillRunning; });
   for (std::size_t i = 0; i < std::min(kMost, problems.size()); ++i)
     fmt::print(stderr, "stipple: {}\n", TextOf(problems[i]));
   if (problems.size() > kMost)

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "analysis/stats/selection.h"
+#include "analysis/trace/compact.h"
 #include "analysis/trace/trace.h"
 
 namespace stipple {
@@ -31,6 +32,7 @@ int RunCheck(const Arguments& arguments);
 int RunPrint(const Arguments& arguments);
 int RunStats(const Arguments& arguments);
 int RunReport(const Arguments& arguments);
+int RunCompact(const Arguments& arguments);
 
 /// An option was not understood: exit 2.
 constexpr int kUsageExit = 2;
@@ -54,6 +56,9 @@ struct SelectionOptions {
 
 /// Loss, and what was left out, are shown on every output: one line each on standard error.
 void WarnOfProblems(const Trace& trace, const TraceHealth& health);
+
+/// A line on standard error for what a compaction left as it was.
+void SayLeftAlone(const CompactResult& result);
 
 /// Writes all of `text` to standard output; a closed pipe ends the program quietly.
 void WriteOut(std::string_view text);

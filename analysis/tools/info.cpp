@@ -81,6 +81,7 @@ std::string InfoJson(const Analysis& info) {
                          {"events", trace.CountsOf(l).Events()}});
   Json problems = Json::array();
   for (const Problem& p : info.health.problems()) {
+    if (p.defect == Defect::kStillRunning) continue;
     problems.push_back(
         {{"problem", EntryOf(p.defect).name}, {"where", p.where}, {"count", p.count}});
     if (!p.when) continue;
@@ -105,6 +106,7 @@ std::string InfoJson(const Analysis& info) {
                      {"clock", ClockJson(info)},
                      {"recorded", RecordedJson(trace)},
                      {"jobs", JobsJson(trace)},
+                     {"running", info.health.CountOf(Defect::kStillRunning)},
                      {"problems", problems}};
   return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -124,10 +126,10 @@ std::string ClockText(const Analysis& info) {
 std::string InfoText(const Analysis& info) {
   const Trace& trace = info.trace;
   const auto rank_count = static_cast<std::uint64_t>(trace.RankCount());
-  std::string text =
-      fmt::format("{}: {} on {} in {}, {}\n", trace.path(),
-                  FormatCount(trace.EventCount(), "event"), FormatCount(rank_count, "rank"),
-                  FormatSeconds(Seconds(trace.SpanNs())), LossText(info.health));
+  std::string text = fmt::format(
+      "{}: {} on {} in {}, {}{}\n", trace.path(), FormatCount(trace.EventCount(), "event"),
+      FormatCount(rank_count, "rank"), FormatSeconds(Seconds(trace.SpanNs())),
+      LossText(info.health), RunningText(trace));
   text += fmt::format("program    {}\n", trace.Program());
   text += fmt::format("processes  {}\n", trace.processes().size());
   text += fmt::format("threads    {}\n", trace.locations().size());

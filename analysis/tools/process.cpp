@@ -41,7 +41,23 @@ int WaitFor(pid_t child) {
   return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
 }
 
+std::atomic<bool> told_to_end{false};
+
+void NoteEnd(int) { told_to_end = true; }
+
 }  // namespace
+
+const std::atomic<bool>& StopOnSignals() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction old = {};
+    sigaction(signal, nullptr, &old);
+    struct sigaction action = {};
+    action.sa_handler = NoteEnd;
+    action.sa_flags = SA_RESTART;
+    if (old.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+  }
+  return told_to_end;
+}
 
 std::optional<std::string> OutputOf(const std::vector<std::string>& command) {
   std::array<int, 2> ends{};

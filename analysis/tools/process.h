@@ -3,6 +3,7 @@
 #ifndef STIPPLE_ANALYSIS_TOOLS_PROCESS_H
 #define STIPPLE_ANALYSIS_TOOLS_PROCESS_H
 
+#include <atomic>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,6 +17,9 @@ std::optional<std::string> OutputOf(const std::vector<std::string>& command);
 /// is sent; `ignored`, if it is not 0, does nothing to the command until it asks for it. Returns its exit status, 128 + n for signal n, 127 when there is no such program, 126
 /// when it cannot be run.
 int RunToEnd(const std::vector<std::string>& command, int ignored = 0);
+
+/// From now on becomes true when this process is told to end: by SIGINT, SIGTERM or SIGHUP.
+const std::atomic<bool>& StopOnSignals();
 
 }  // namespace stipple
 

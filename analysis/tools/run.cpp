@@ -19,6 +19,7 @@
 #include "analysis/tools/command.h"
 #include "analysis/tools/launcher.h"
 #include "analysis/tools/process.h"
+#include "analysis/tools/progress.h"
 #include "analysis/trace/input_error.h"
 #include "stipple/filter.h"
 
@@ -130,7 +131,9 @@ bool LooksLikeArchive(const fs::path& path) {
   std::error_code error;
   if (!fs::is_directory(fs::symlink_status(path, error))) return false;
   for (const fs::directory_entry& entry : fs::directory_iterator(path, error))
-    if (!entry.is_regular_file() || entry.path().extension() != ".stream") return false;
+    if (!entry.is_regular_file() ||
+        (entry.path().extension() != ".stream" && entry.path().extension() != kUnfinishedStream))
+      return false;
   return !error;
 }
 
@@ -218,6 +221,18 @@ std::uint64_t BytesOnDisk(const fs::path& path) {
   return bytes;
 }
 
+/// Never fails: an archive that cannot be compacted is as good, only larger.
+void Compact(const std::string& archive) {
+  try {
+    ProgressLine progress;
+    CompactResult result = CompactArchive(archive, archive, StopOnSignals(), progress.meter());
+    progress.Stop();
+    SayLeftAlone(result);
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "stipple: not compacted: {}\n", e.what());
+  }
+}
+
 /// What was recorded, what was left out, what to do next: a line each.
 void Summarise(const RunOptions& options, int status) {
   const std::string& archive = options.archive;
@@ -235,12 +250,13 @@ void Summarise(const RunOptions& options, int status) {
   }
   const Trace trace = Trace::Open(archive);
   const TraceHealth health = trace.Health();
-  fmt::print(stderr, "stipple: recorded {} in {} of {}: {}, {}{}\n",
+  fmt::print(stderr, "stipple: recorded {} in {} of {}: {}, {}{}{}\n",
              FormatCount(trace.EventCount(), "event"),
              fmt::format("{} process{}", trace.processes().size(),
                          trace.processes().size() == 1 ? "" : "es"),
              FormatCount(static_cast<std::uint64_t>(trace.RankCount()), "rank"),
              FormatBytes(static_cast<double>(BytesOnDisk(archive))), LossText(health),
+             RunningText(trace),
              health.Sound() ? "" : fmt::format(" (problems: stipple check {})", archive));
   for (const std::string& text : LeftOutTexts(trace)) fmt::print(stderr, "stipple: {}\n", text);
   fmt::print(stderr, "stipple: next: stipple report {} -o {}.html\n", archive,
@@ -265,6 +281,7 @@ int RunRun(const Arguments& arguments) {
   if (!MakeArchive(options->archive, options->overwrite)) return RunToEnd(options->command);
   // A program that does not listen yet, or a shell around it, must not die of the signal.
   const int status = RunToEnd(Prepare(*options, preload), options->paused ? SIGUSR2 : 0);
+  Compact(options->archive);
   Summarise(*options, status);
   return status;
 }

@@ -66,7 +66,8 @@ int RunStats(const Arguments& arguments) {
   progress.Stop();
   const bool empty = trace.EventCount() == 0;
   if (form.name == "text")
-    WriteOut((empty ? "The archive holds no events." : answer.headline) + "\n\n");
+    WriteOut((empty ? "The archive holds no events." : answer.headline) + RunningText(trace) +
+             "\n\n");
   WriteOut(form.text(answer.table));
   WarnOfProblems(trace, analysis.health);
   return 0;

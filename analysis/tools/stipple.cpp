@@ -21,6 +21,7 @@ constexpr Command kCommands[] = {
     {"print", RunPrint, "events as text"},
     {"stats", RunStats, "a table: profile, states, messages, volume, waits"},
     {"report", RunReport, "a self-contained HTML page"},
+    {"compact", RunCompact, "make an archive smaller"},
 };
 
 std::string Help() {

@@ -34,8 +34,8 @@ constexpr std::uint32_t kMostLength = 5;
 /// First bytes of what zstd gets; then the table of regions, the wide words, operations, distances
 /// and regions.
 struct Columns {
-  std::uint32_t table;      // entries of four bytes
-  std::uint32_t wide;       // words
+  std::uint32_t table;       // entries of four bytes
+  std::uint32_t wide;        // words
   std::uint32_t operations;  // bytes, as the two below
   std::uint32_t distances;
   std::uint32_t regions;
@@ -95,8 +95,8 @@ struct ChunkCoder::State {
   }
 
   void Operate(Operation operation, std::uint32_t length = 0) {
-    operations.push_back(static_cast<char>(
-        (static_cast<std::uint32_t>(operation) << kOperationShift) | length));
+    operations.push_back(
+        static_cast<char>((static_cast<std::uint32_t>(operation) << kOperationShift) | length));
   }
 
   /// Bytes of the distance.
@@ -170,12 +170,10 @@ struct ChunkCoder::State {
       named.push_back(static_cast<char>(found == indices.end() ? kWideIndex : found->second));
       if (found == indices.end()) Append(named, &region, kRegionBytes);
     }
-    const Columns columns{static_cast<std::uint32_t>(table.size()),
-                          static_cast<std::uint32_t>(wide.size()),
-                          static_cast<std::uint32_t>(operations.size()),
-                          static_cast<std::uint32_t>(distances.size()),
-                          static_cast<std::uint32_t>(named.size()),
-                          0};
+    const Columns columns{
+        static_cast<std::uint32_t>(table.size()),      static_cast<std::uint32_t>(wide.size()),
+        static_cast<std::uint32_t>(operations.size()), static_cast<std::uint32_t>(distances.size()),
+        static_cast<std::uint32_t>(named.size()),      0};
     std::string content;
     Append(content, &columns, sizeof(columns));
     Append(content, table.data(), table.size() * sizeof(table[0]));
@@ -301,8 +299,8 @@ ChunkDecoder& ChunkDecoder::operator=(ChunkDecoder&&) noexcept = default;
 ChunkDecoder::~ChunkDecoder() = default;
 
 bool ChunkDecoder::Decode(std::span<const std::byte> frame, std::span<EventWord> words) {
-  constexpr std::array<std::uint64_t, 8> kMasks = {
-      0, 0xff, 0xffff, 0xffffff, 0xffffffff, 0xffffffffff, 0, 0};
+  constexpr std::array<std::uint64_t, 8> kMasks = {0,          0xff,         0xffff, 0xffffff,
+                                                   0xffffffff, 0xffffffffff, 0,      0};
   State& s = *state_;
   if (words.size() > kMostCompactedWords || !s.Open(frame, words.size())) return false;
   std::uint64_t now = 0;
@@ -315,8 +313,7 @@ bool ChunkDecoder::Decode(std::span<const std::byte> frame, std::span<EventWord>
     const std::uint32_t length = byte & kLengthMask;
     if (to == end) return false;
     if (operation >= Operation::kZero) [[unlikely]] {
-      const std::uint64_t made =
-          s.Other(operation, to, static_cast<std::uint64_t>(end - to), now);
+      const std::uint64_t made = s.Other(operation, to, static_cast<std::uint64_t>(end - to), now);
       if (made == 0) return false;
       to += made;
       continue;

@@ -4,9 +4,10 @@
 //
 // Most of a trace can be foretold. An event needs its distance in time from the one before, a byte
 // or two; a leave is nearly always that of the innermost open function; an enter is nearly always
-// that of the function which followed the same sibling in the same parent the last time. So an event
-// becomes an operation (one byte), the bytes of its distance, and seldom a region. Operations,
-// distances and regions stand in columns, each alike in itself, and zstd takes what repeats.
+// that of the function which followed the same sibling in the same parent the last time. So an
+// event becomes an operation (one byte), the bytes of its distance, and seldom a region.
+// Operations, distances and regions stand in columns, each alike in itself, and zstd takes what
+// repeats.
 //
 // Coder and decoder keep the same model of the thread: open functions, the last time, what was
 // foretold. It begins empty with each chunk: leaves of functions entered before name their region.

@@ -22,6 +22,9 @@ constexpr std::array kDefects = {
                 "16 KiB blocks are damaged and were skipped"},
     DefectEntry{Defect::kMissingChunk, "missing-chunk", "chunk of events is missing",
                 "chunks of events are missing"},
+    DefectEntry{Defect::kDamagedChunk, "damaged-chunk",
+                "compacted chunk is damaged: its events are lost",
+                "compacted chunks are damaged: their events are lost"},
     DefectEntry{Defect::kBadTime, "bad-time", "chunk begins at an impossible time",
                 "chunks begin at an impossible time"},
     DefectEntry{Defect::kBadRecord, "bad-record", "damaged record hides the rest of its chunk",
@@ -128,10 +131,25 @@ std::uint64_t TraceHealth::LostEvents() const {
          CountOf(Defect::kOpenRecord);
 }
 
+std::size_t TraceHealth::RunningPlaces() const {
+  return static_cast<std::size_t>(
+      std::ranges::count(problems_, Defect::kStillRunning, &Problem::defect));
+}
+
+void TraceHealth::ForgiveUnfinished() {
+  constexpr std::array kMayCome = {Defect::kEmptyArchive,         Defect::kMissingRank,
+                                   Defect::kUnmatchedSend,        Defect::kUnmatchedReceive,
+                                   Defect::kIncompleteCollective, Defect::kClockUnknown};
+  if (Running())
+    std::erase_if(problems_, [&kMayCome](const Problem& p) {
+      return std::ranges::find(kMayCome, p.defect) != kMayCome.end();
+    });
+}
+
 bool TraceHealth::LostUncounted() const {
   constexpr std::array kUncounted = {
       Defect::kEmptyArchive, Defect::kUnreadableFile, Defect::kTruncatedFile, Defect::kBadChunk,
-      Defect::kMissingChunk, Defect::kBadRecord,      Defect::kMissingRank};
+      Defect::kMissingChunk, Defect::kDamagedChunk,   Defect::kBadRecord,     Defect::kMissingRank};
   return std::ranges::any_of(kUncounted, [this](Defect d) { return CountOf(d) != 0; });
 }
 

@@ -20,6 +20,7 @@ enum class Defect {
   kTruncatedFile,
   kBadChunk,
   kMissingChunk,
+  kDamagedChunk,
   kBadTime,
   kBadRecord,
   kOpenRecord,
@@ -84,10 +85,15 @@ class TraceHealth {
   std::uint64_t LostEvents() const;
   /// More were lost than LostEvents, and nobody knows how many.
   bool LostUncounted() const;
-  bool Sound() const { return problems_.empty(); }
+  /// Some processes still run, which is no defect.
+  bool Running() const { return RunningPlaces() != 0; }
+  bool Sound() const { return problems_.size() == RunningPlaces(); }
+  /// While processes run, what others are waiting for is not lost: drops what may yet come.
+  void ForgiveUnfinished();
   const std::vector<Problem>& problems() const { return problems_; }
 
  private:
+  std::size_t RunningPlaces() const;
   std::vector<Problem> problems_;
 };
 

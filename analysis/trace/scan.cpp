@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "analysis/trace/chunk_code.h"
+
 namespace stipple {
 namespace {
 
@@ -83,6 +85,17 @@ bool IsWhole(const EventWord* word, std::uint64_t words) {
 }
 
 }  // namespace
+
+void ChunkWords::Decode(const Chunk& stored, ScanCounts& counts) {
+  thread_local ChunkDecoder decoder;  // larger than the words, and one is enough for many scans
+  words_.resize(stored.coded_words);
+  chunk_ = stored;
+  chunk_.begin = chunk_.end = words_.data();
+  if (decoder.Decode(stored.code, words_))
+    chunk_.end += stored.coded_words;
+  else
+    ++counts.damaged_chunks;
+}
 
 std::vector<std::uint32_t> OpenRegions(const EventWord* record, std::uint32_t region_count) {
   std::vector<std::uint32_t> regions(RecordAt<OpenFrames>(record).frames);

@@ -35,6 +35,7 @@ struct ScanCounts {
   std::uint64_t undefined_regions = 0;
   std::uint64_t clock_steps = 0;
   std::uint64_t first_step_ticks = 0;  // when the first of them was seen
+  std::uint64_t damaged_chunks = 0;    // compacted, of which nothing can be read
 
   std::uint64_t Events() const { return function_events + records; }
   ScanCounts& operator+=(const ScanCounts& o) {
@@ -46,17 +47,41 @@ struct ScanCounts {
     undefined_regions += o.undefined_regions;
     if (clock_steps == 0) first_step_ticks = o.first_step_ticks;
     clock_steps += o.clock_steps;
+    damaged_chunks += o.damaged_chunks;
     return *this;
   }
 };
 
-/// Where a scan stands; a fresh one stands before the first event.
+/// The words of the chunk that a scan is in: where they lie, or decoded here.
+class ChunkWords {
+ public:
+  /// `fresh`: the scan has just come to this chunk.
+  const Chunk& Of(const Chunk& stored, bool fresh, ScanCounts& counts) {
+    if (stored.code.empty()) [[likely]]
+      return stored;
+    if (fresh) Decode(stored, counts);
+    return chunk_;
+  }
+
+ private:
+  void Decode(const Chunk& stored, ScanCounts& counts);
+  std::vector<EventWord> words_;
+  Chunk chunk_;
+};
+
+/// Where a scan stands; a fresh one stands before the first event. It is moved, never copied: what
+/// a visitor is shown may lie in it, until the scan comes to the next chunk.
 struct ScanPosition {
   std::size_t chunk = 0;
   const EventWord* word = nullptr;  // in `chunk`; null: at its begin
   std::uint64_t now = 0;            // ticks of the last event
   std::uint64_t step = 0;           // between unclocked events
   std::uint64_t unclocked = 0;      // events left that take a step
+  ChunkWords words;
+
+  ScanPosition() = default;
+  ScanPosition(ScanPosition&&) = default;
+  ScanPosition& operator=(ScanPosition&&) = default;
 };
 
 /// A copy of the record at `word`, which SoundRecordWords has accepted.
@@ -67,8 +92,8 @@ Record RecordAt(const EventWord* word) {
   return record;
 }
 
-/// Regions of the frames in an OpenFrames record that has been accepted, outermost first; those that
-/// are not below region_count as 0.
+/// Regions of the frames in an OpenFrames record that has been accepted, outermost first; those
+/// that are not below region_count as 0.
 std::vector<std::uint32_t> OpenRegions(const EventWord* record, std::uint32_t region_count);
 /// Whether that is all that was open.
 bool AllOpenKnown(const EventWord* record);
@@ -159,7 +184,7 @@ template <class Visitor>
 bool ScanSome(const ThreadStream& thread, std::uint32_t region_count, std::uint64_t budget,
               ScanPosition& at, ScanCounts& counts, Visitor& visitor) {
   if (at.chunk >= thread.chunks.size()) return false;
-  const Chunk& chunk = thread.chunks[at.chunk];
+  const Chunk& chunk = at.words.Of(thread.chunks[at.chunk], at.word == nullptr, counts);
   const std::uint64_t limit =
       at.chunk + 1 < thread.chunks.size() ? thread.chunks[at.chunk + 1].ticks : thread.end_limit;
   const EventWord* const end = WrittenEnd(chunk);
@@ -227,8 +252,12 @@ bool ScanSome(const ThreadStream& thread, std::uint32_t region_count, std::uint6
   }
   if constexpr (HasHotPart<Visitor>) visitor.End(hot);
   counts.function_events += function_events;
-  at = w < end ? ScanPosition{at.chunk, w, now, step, unclocked}
-               : ScanPosition{at.chunk + 1, nullptr, now, 0, 0};
+  const bool more = w < end;
+  at.chunk += more ? 0 : 1;
+  at.word = more ? w : nullptr;
+  at.now = now;
+  at.step = more ? step : 0;
+  at.unclocked = more ? unclocked : 0;
   return true;
 }
 

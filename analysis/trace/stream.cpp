@@ -11,17 +11,17 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <map>
 #include <mutex>
 
+#include "analysis/trace/chunks.h"
 #include "analysis/trace/gaps.h"
+#include "analysis/trace/writer.h"
 
 namespace stipple {
 namespace {
 
-constexpr auto kKnownFeatures = static_cast<std::uint64_t>(Feature::kStackSwitches);
+constexpr auto kKnownFeatures = static_cast<std::uint64_t>(Feature::kCompacted) |
+                                static_cast<std::uint64_t>(Feature::kStackSwitches);
 
 // A damaged number must not make tables of millions of entries: numbers are given out one after
 // the other, so one far above the count of definitions is damage.
@@ -297,82 +297,9 @@ void ReadDefinitions(const Chunk& chunk, Stream& stream) {
   }
 }
 
-struct FoundChunks {
-  std::map<std::uint32_t, ThreadStream> threads;
-  std::vector<Chunk> definitions;
-};
-
-/// Bytes of the chunk at `offset`: fewer than its header says where another chunk begins inside it.
-std::uint32_t SoundBytes(std::span<const std::byte> file, std::size_t offset, std::uint32_t bytes) {
-  for (std::uint32_t at = kGranuleBytes; at < bytes; at += kGranuleBytes) {
-    std::uint64_t magic = 0;
-    if (offset + at + sizeof(magic) > file.size()) break;
-    std::memcpy(&magic, file.data() + offset + at, sizeof(magic));
-    if (magic == kChunkMagic) return at;
-  }
-  return bytes;
-}
-
-/// The chunk whose header is `h`, cut where the file ends.
-Chunk ChunkAt(std::span<const std::byte> file, std::size_t offset, const ChunkHeader& h) {
-  const std::size_t end = std::min<std::size_t>(file.size(), offset + h.bytes);
-  const auto* begin =
-      reinterpret_cast<const EventWord*>(file.data() + offset + sizeof(ChunkHeader));
-  return {begin,      begin + (end - offset - sizeof(ChunkHeader)) / sizeof(EventWord),
-          h.sequence, h.ticks,
-          h.raw_ns,   h.lost};
-}
-
-/// Whether a chunk of events has lost its magic and nothing else: its thread copied the window and
-/// was killed before it had cleared it. The copy counts, and the window's granules begin with
-/// events.
-bool IsBeingCleared(const ChunkHeader& h) {
-  return h.magic == 0 && h.kind == ChunkKind::kEvents && h.bytes != 0 &&
-         h.bytes % kGranuleBytes == 0;
-}
-
-/// Walks the granules. One that is no chunk's begin is skipped; a whole one of zeros was never
-/// used.
-FoundChunks FindChunks(Stream& stream) {
-  const std::span<const std::byte> file = stream.file.bytes();
-  FoundChunks found;
-  for (std::size_t offset = kGranuleBytes; offset + sizeof(ChunkHeader) <= file.size();) {
-    ChunkHeader h;
-    std::memcpy(&h, file.data() + offset, sizeof(h));
-    const bool valid = h.magic == kChunkMagic && h.bytes != 0 && h.bytes % kGranuleBytes == 0 &&
-                       (h.kind == ChunkKind::kEvents || h.kind == ChunkKind::kDefinitions);
-    if (!valid) {
-      if (h.magic != 0) stream.health.Add(Defect::kBadChunk, stream.file_name);
-      offset += IsBeingCleared(h) ? SoundBytes(file, offset, h.bytes) : kGranuleBytes;
-      continue;
-    }
-    if (const std::uint32_t bytes = SoundBytes(file, offset, h.bytes); bytes != h.bytes) {
-      stream.health.Add(Defect::kBadChunk, stream.file_name);
-      h.bytes = bytes;
-    }
-    if (h.ticks >= kMostTicks) {
-      stream.health.Add(Defect::kBadTime, stream.file_name);
-      h.ticks = 0;  // MendTimes finds it a place
-    }
-    const Chunk chunk = ChunkAt(file, offset, h);
-    if (offset + h.bytes > file.size()) stream.health.Add(Defect::kTruncatedFile, stream.file_name);
-    if (h.ticks != 0) stream.clock_pairs.push_back({h.ticks, h.raw_ns});
-    if (h.kind == ChunkKind::kDefinitions) {
-      found.definitions.push_back(chunk);
-    } else {
-      ThreadStream& t = found.threads[h.thread];
-      t.thread = h.thread;
-      t.tid = h.tid;
-      t.chunks.push_back(chunk);
-    }
-    offset += h.bytes;
-  }
-  return found;
-}
-
-/// Sequence numbers are `expected` and on: what is not there was lost. Of what is there twice the first
-/// counts: the second is the copy of a window whose process was killed before it lost its magic.
-/// Two different chunks of one number are damage.
+/// Sequence numbers are `expected` and on: what is not there was lost. Of what is there twice the
+/// first counts: the second is the copy of a window whose process was killed before it lost its
+/// magic. Two different chunks of one number are damage.
 void OrderChunks(std::vector<Chunk>& chunks, std::uint64_t expected, Stream& stream) {
   std::ranges::stable_sort(chunks, {}, &Chunk::sequence);
   std::vector<Chunk> once;
@@ -406,13 +333,6 @@ void MendTimes(std::vector<Chunk>& chunks, Stream& stream) {
     }
     stream.health.Add(Defect::kBadTime, stream.file_name);
   }
-}
-
-/// The process has the stream still mapped.
-bool IsRunning(const Stream& stream) {
-  std::ifstream maps("/proc/" + std::to_string(stream.header.pid) + "/maps");
-  const std::string text{std::istreambuf_iterator<char>(maps), {}};
-  return text.find("/" + stream.file_name) != std::string::npos;
 }
 
 /// A page of the mapping that the file no longer has (a process that ends cuts its stream while it
@@ -493,7 +413,10 @@ MappedFile::~MappedFile() {
   if (data_ != nullptr) munmap(const_cast<std::byte*>(data_), bytes_);
 }
 
-std::unique_ptr<Stream> ReadStream(const std::string& path, TraceHealth& health) {
+namespace {
+
+/// The stream with its header read; null, with the reason in `health`.
+std::unique_ptr<Stream> OpenStream(const std::string& path, TraceHealth& health) {
   const std::string file_name = std::filesystem::path(path).filename();
   std::optional<MappedFile> file = MappedFile::Open(path);
   if (!file) {
@@ -502,21 +425,70 @@ std::unique_ptr<Stream> ReadStream(const std::string& path, TraceHealth& health)
   }
   auto stream = std::make_unique<Stream>(std::move(*file));
   stream->file_name = file_name;
-  if (!ReadHeader(*stream, health)) return nullptr;
-  FoundChunks found = FindChunks(*stream);
-  for (auto& [number, thread] : found.threads) stream->threads.push_back(std::move(thread));
-  OrderChunks(found.definitions, 0, *stream);
-  for (const Chunk& chunk : found.definitions) ReadDefinitions(chunk, *stream);
-  for (ThreadStream& thread : stream->threads) {
-    OrderChunks(thread.chunks, DropOverwritten(thread, *stream), *stream);
-    MendSteps(thread, *stream);
-    MendTimes(thread.chunks, *stream);
+  return ReadHeader(*stream, health) ? std::move(stream) : nullptr;
+}
+
+void ReadChunks(Stream& stream, FoundChunks found) {
+  for (auto& [number, thread] : found.threads) stream.threads.push_back(std::move(thread));
+  OrderChunks(found.definitions, 0, stream);
+  stream.definitions = std::move(found.definitions);
+  for (const Chunk& chunk : stream.definitions) ReadDefinitions(chunk, stream);
+  for (ThreadStream& thread : stream.threads) {
+    OrderChunks(thread.chunks, DropOverwritten(thread, stream), stream);
+    MendSteps(thread, stream);
+    MendTimes(thread.chunks, stream);
   }
-  std::erase_if(stream->threads, [](const ThreadStream& t) { return t.chunks.empty(); });
-  PlaceLosses(*stream);
-  if (!stream->end)
-    stream->health.Add(IsRunning(*stream) ? Defect::kStillRunning : Defect::kUnclosedProcess,
-                       file_name);
+  std::erase_if(stream.threads, [](const ThreadStream& t) { return t.chunks.empty(); });
+  PlaceLosses(stream);
+}
+
+/// Whether the process of a stream said its end; a child of it may hold the stream still.
+bool HasEnded(const std::string& path) {
+  TraceHealth health;
+  const std::unique_ptr<Stream> stream = OpenStream(path, health);
+  if (stream == nullptr) return false;
+  for (const Chunk& chunk : FindLiveDefinitions(stream->file)) ReadDefinitions(chunk, *stream);
+  return stream->end.has_value();
+}
+
+/// What the process has recorded so far. What is not there yet is no defect.
+std::unique_ptr<Stream> ReadLiveStream(const std::string& path, TraceHealth& health) {
+  constexpr int kTries = 8;
+  const std::string file_name = std::filesystem::path(path).filename();
+  std::unique_ptr<Stream> stream;
+  FoundChunks found;
+  bool whole = false;
+  for (int i = 0; i < kTries && !whole; ++i) {
+    TraceHealth not_yet;
+    stream = OpenStream(path, not_yet);
+    if (stream == nullptr || stream->header.magic != kFileMagic) {
+      health.Add(Defect::kStillRunning, file_name);
+      return nullptr;
+    }
+    found = FindLiveChunks(*stream, whole);
+  }
+  // Events refer to definitions that were written before them: these are looked for afterwards, in
+  // a file that may have grown.
+  if (std::optional<MappedFile> later = MappedFile::Open(path); later) {
+    stream->later.push_back(std::move(*later));
+    found.definitions = FindLiveDefinitions(stream->later.back());
+  }
+  ReadChunks(*stream, std::move(found));
+  stream->end.reset();  // it came when its last events had been looked for
+  stream->running = true;
+  stream->health = {};
+  stream->health.Add(Defect::kStillRunning, file_name);
+  return stream;
+}
+
+}  // namespace
+
+std::unique_ptr<Stream> ReadStream(const std::string& path, TraceHealth& health) {
+  if (WriterOf(path) == Writer::kThere && !HasEnded(path)) return ReadLiveStream(path, health);
+  std::unique_ptr<Stream> stream = OpenStream(path, health);
+  if (stream == nullptr) return nullptr;
+  ReadChunks(*stream, FindChunks(*stream));
+  if (!stream->end) stream->health.Add(Defect::kUnclosedProcess, stream->file_name);
   return stream;
 }
 

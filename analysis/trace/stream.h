@@ -46,8 +46,15 @@ struct Chunk {
   std::uint64_t ticks = 0;
   std::uint64_t raw_ns = 0;
   std::uint64_t lost = 0;
+  std::uint32_t thread = 0;
+  std::uint32_t tid = 0;
+  // Compacted: the words are not here, ChunkWords (scan.h) decodes them.
+  std::span<const std::byte> code;
+  std::uint64_t coded_words = 0;
 
+  /// As they lie in the file.
   std::uint64_t Bytes() const {
+    if (!code.empty()) return sizeof(ChunkHeader) + sizeof(CompactedChunk) + code.size();
     return static_cast<std::uint64_t>(end - begin) * sizeof(EventWord) + sizeof(ChunkHeader);
   }
 };
@@ -138,6 +145,7 @@ struct Stream {
   explicit Stream(MappedFile mapped) : file(std::move(mapped)) {}
 
   MappedFile file;
+  std::deque<MappedFile> later;  // of a running process: again, when it had grown
   std::string file_name;
   FileHeader header = {};
   std::string boot_id, host_name, program, settings, command_line;
@@ -164,6 +172,9 @@ struct Stream {
   std::vector<LostSpan> losses;          // all of `lost`
   std::vector<Overwritten> overwritten;  // by a ring, of each thread
   std::vector<ClockPair> clock_pairs;
+  std::vector<Chunk> definitions;
+  bool running = false;                       // when it was read; then `end` is not set
+  std::deque<std::vector<EventWord>> copies;  // of chunks that its process still writes
 
   TraceHealth health;
 };

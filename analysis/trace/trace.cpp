@@ -289,6 +289,7 @@ Trace Trace::Open(const std::string& path, ReadMeter* meter) {
   }
   trace.health_.Add(Defect::kMissingRank, "",
                     static_cast<std::uint64_t>(std::ranges::count(seen, false)));
+  trace.health_.ForgiveUnfinished();
   return trace;
 }
 
@@ -375,6 +376,7 @@ TraceHealth Trace::Health() const {
     health.Add(Defect::kUndefinedRegion, where, counts.undefined_regions);
     const std::int64_t step_ns = TimeNs(l, counts.first_step_ticks);
     health.Add(Defect::kClockStep, where, counts.clock_steps, ProblemSpan{step_ns, step_ns});
+    health.Add(Defect::kDamagedChunk, where, counts.damaged_chunks);
   }
   return health;
 }

@@ -2,8 +2,11 @@
 // fuzz_archive ROUNDS: reads a good archive after random bit flips, overwrites and truncations.
 // Whatever the bytes: no crash, times inside the span, states that sum to it. Without damage:
 // sound.
+#include <atomic>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <iterator>
 #include <random>
 #include <string>
@@ -14,6 +17,7 @@
 #include "analysis/stats/states.h"
 #include "analysis/stats/tables.h"
 #include "analysis/stats/timeline_of.h"
+#include "analysis/trace/compact.h"
 #include "tests/analysis/archive_writer.h"
 
 namespace stipple {
@@ -110,20 +114,32 @@ void ReadAll(const TemporaryArchive& archive, int round) {
   (void)TimelineOf(analysis, 0, static_cast<double>(trace.SpanNs()) * 1e-9, 100);
 }
 
+/// The stream after `stipple compact`.
+std::string Compacted(const std::string& bytes) {
+  TemporaryArchive archive;
+  archive.AddBytes("1", bytes);
+  CompactArchive(archive.path(), archive.path(), std::atomic<bool>(false), nullptr);
+  std::ifstream file(std::filesystem::directory_iterator(archive.path())->path(), std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// As they were recorded in even rounds, compacted in odd ones; undamaged in the first two.
 int Main(int rounds) {
-  const std::string good[] = {GoodStream(0, 0).Bytes(), GoodStream(1, 0).Bytes(),
-                              GoodStream(0, 1).Bytes(), GoodStream(1, 1).Bytes()};
+  std::string streams[2][4] = {{GoodStream(0, 0).Bytes(), GoodStream(1, 0).Bytes(),
+                                GoodStream(0, 1).Bytes(), GoodStream(1, 1).Bytes()}};
+  for (std::size_t i = 0; i < std::size(streams[0]); ++i) streams[1][i] = Compacted(streams[0][i]);
   for (int round = 0; round < rounds; ++round) {
+    const auto& good = streams[round % 2];
     Random random(static_cast<std::uint64_t>(round));
     TemporaryArchive archive;
     for (std::size_t i = 0; i < std::size(good); ++i) {
       std::string bytes = good[i];
-      if (round != 0 && random() % 4 != 0) Damage(bytes, random);
+      if (round > 1 && random() % 4 != 0) Damage(bytes, random);
       archive.AddBytes(std::to_string(i), bytes);
     }
-    if (round == 0) {
+    if (round < 2) {
       const Trace trace = Trace::Open(archive.path());
-      Require(Analysis(trace).health.Sound(), "a good archive is not sound", 0);
+      Require(Analysis(trace).health.Sound(), "a good archive is not sound", round);
     }
     ReadAll(archive, round);
   }

@@ -5,6 +5,7 @@
 #include <time.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -18,6 +19,7 @@
 #include "analysis/stats/analysis.h"
 #include "analysis/stats/profile.h"
 #include "analysis/stats/states.h"
+#include "analysis/trace/compact.h"
 #include "stipple/format.h"
 
 namespace stipple {
@@ -112,7 +114,7 @@ void SumWords(const Trace& trace) {
 }
 
 struct Task {
-  const char* name;
+  std::string name;
   std::function<void(const Trace&)> run;
   std::vector<double> seconds;
 };
@@ -134,10 +136,19 @@ int Main(std::uint64_t events, const std::string& directory) {
                                 states(analysis);
                               },
                               {}}};
+  const std::string small = path + ".compacted";
+  const double begin_compacting = CpuSeconds();
+  std::filesystem::create_directories(small);
+  const CompactResult result = CompactArchive(path, small, std::atomic<bool>(false), nullptr);
+  const double compacting = CpuSeconds() - begin_compacting;
+  const std::size_t plain = tasks.size();
+  for (std::size_t i = 1; i < plain; ++i)
+    tasks.push_back({"compacted: " + tasks[i].name, tasks[i].run, {}});
   for (int run = 0; run < kRuns; ++run) {
-    for (Task& task : tasks) {
+    for (std::size_t i = 0; i < tasks.size(); ++i) {
+      Task& task = tasks[i];
       const double begin = CpuSeconds();
-      const Trace trace = Trace::Open(path);  // opening is part of the price
+      const Trace trace = Trace::Open(i < plain ? path : small);  // part of the price
       task.run(trace);
       task.seconds.push_back(CpuSeconds() - begin);
     }
@@ -145,11 +156,15 @@ int Main(std::uint64_t events, const std::string& directory) {
   for (Task& task : tasks) {
     std::ranges::sort(task.seconds);
     const auto rate = [&](double s) { return static_cast<double>(events) / s / 1e6; };
-    std::printf("%-24s %7.1f million events/s of CPU (median of %d; %.1f to %.1f)\n", task.name,
-                rate(task.seconds[kRuns / 2]), kRuns, rate(task.seconds.back()),
+    std::printf("%-30s %7.1f million events/s of CPU (median of %d; %.1f to %.1f)\n",
+                task.name.c_str(), rate(task.seconds[kRuns / 2]), kRuns, rate(task.seconds.back()),
                 rate(task.seconds.front()));
   }
+  std::printf("%-30s %7.1f MB/s of CPU, to %.2f bytes per event\n", "compacting",
+              static_cast<double>(result.bytes_before) / compacting / 1e6,
+              static_cast<double>(result.bytes_after) / static_cast<double>(events));
   std::filesystem::remove_all(path);
+  std::filesystem::remove_all(small);
   return checksum == 0 ? 1 : 0;
 }
 
