@@ -141,8 +141,9 @@ bool TakeFreshChunk(Process& process, Thread& thread, std::size_t bytes) {
 bool TakeAnyChunk(Process& process, Thread& thread, std::size_t bytes, std::uint64_t ticks) {
   if (HasRing(process.ring))
     return FitsRing(process.ring, bytes) && TakeRingChunk(process, thread, ticks);
-  return thread.chunk != nullptr && CanReuse(thread, bytes) ? MoveWindowOn(process, thread)
-                                                            : TakeFreshChunk(process, thread, bytes);
+  return thread.chunk != nullptr && CanReuse(thread, bytes)
+             ? MoveWindowOn(process, thread)
+             : TakeFreshChunk(process, thread, bytes);
 }
 
 ClockPair PairOf(const char* chunk) {

@@ -10,9 +10,9 @@
 
 namespace stipple {
 
-inline constexpr std::uint64_t kSureRateNs = 10'000'000;    // a rate from less is no measure
-inline constexpr std::uint64_t kLeastStepNs = 10'000'000;   // readings may be interrupted
-inline constexpr std::uint64_t kStepShare = 64;             // and the rate be a little wrong
+inline constexpr std::uint64_t kSureRateNs = 10'000'000;   // a rate from less is no measure
+inline constexpr std::uint64_t kLeastStepNs = 10'000'000;  // readings may be interrupted
+inline constexpr std::uint64_t kStepShare = 64;            // and the rate be a little wrong
 
 /// From `before` to `now`, the rate being that from `begin` to `before`.
 inline bool ClockStepped(const ClockPair& begin, const ClockPair& before, const ClockPair& now) {

@@ -18,11 +18,10 @@ template <class Item>
 Item* Push(Growing<Item>& items) {
   if (items.count == items.room) {
     const std::uint64_t bytes = items.room * sizeof(Item);
-    const long grown =
-        items.room == 0
-            ? Argument(MapWipedMemory(4096))
-            : Syscall(SYS_mremap, Argument(items.items), static_cast<long>(bytes),
-                      static_cast<long>(2 * bytes), MREMAP_MAYMOVE);
+    const long grown = items.room == 0
+                           ? Argument(MapWipedMemory(4096))
+                           : Syscall(SYS_mremap, Argument(items.items), static_cast<long>(bytes),
+                                     static_cast<long>(2 * bytes), MREMAP_MAYMOVE);
     if (grown == 0 || IsError(grown)) return nullptr;
     items.items = reinterpret_cast<Item*>(grown);
     items.room = items.room == 0 ? 4096 / sizeof(Item) : 2 * items.room;

@@ -26,7 +26,7 @@ struct RingPlace {
   char* memory;
   Thread* owner;
   std::uint64_t sequence;
-  std::uint64_t events;        // in it, once it is closed
+  std::uint64_t events;  // in it, once it is closed
   std::uint64_t closed_ticks;
   std::uint32_t next;
   bool is_window;   // of a thread that has ended
