@@ -25,8 +25,10 @@ Analysis::Analysis(const Trace& of) : trace(of), profiles(of.locations().size())
     if (process.stream->header.forked == 0)
       leaves_without_enter[l.index] = visitor.leaves_without_enter();
   });
+  for (LocationActivity& a : activities) kernel.push_back(std::move(a.system_calls));
   mpi = JoinActivity(trace, std::move(activities));
   waits = FindWaits(trace, mpi);
+  kernel = KernelTimeOf(trace, std::move(kernel), mpi.calls);
   health = trace.Health();
   for (const Location& l : trace.locations()) {
     const std::string& where = trace.ProcessOf(l).where;

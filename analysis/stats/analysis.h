@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "analysis/stats/kernel_time.h"
 #include "analysis/stats/waits.h"
 #include "analysis/trace/health.h"
 #include "analysis/trace/mpi_activity.h"
@@ -29,6 +30,7 @@ struct Analysis {
   std::vector<LocationProfile> profiles;  // by location, of the whole time
   MpiActivity mpi;
   std::vector<CallWait> waits;  // by call of mpi
+  KernelTime kernel;            // by location
   TraceHealth health;           // all that is wrong with the archive
 };
 

@@ -11,6 +11,8 @@
 #include "analysis/stats/message_matrix.h"
 #include "analysis/stats/profile.h"
 #include "analysis/stats/states.h"
+#include "analysis/stats/switches.h"
+#include "analysis/stats/syscalls.h"
 #include "analysis/trace/demangle.h"
 
 namespace stipple {
@@ -84,13 +86,28 @@ TableAnswer Imbalance(const Analysis& analysis, const Selection& selection, bool
   return {std::move(table), f.sentence};
 }
 
+TableAnswer SwitchesAnswer(const Analysis& analysis, const Selection& selection, bool) {
+  TableAnswer answer;
+  answer.table = SwitchesTable(analysis.trace, selection, answer.headline);
+  return answer;
+}
+
+TableAnswer SystemCallsAnswer(const Analysis& analysis, const Selection& selection, bool per_rank) {
+  TableAnswer answer;
+  answer.table = SystemCallsTable(analysis.trace, selection, per_rank, answer.headline);
+  return answer;
+}
+
 constexpr std::array kTables = {
     TableEntry{"profile", Profile, "time and calls per region, most exclusive time first", true},
     TableEntry{"states", States, "user, system, message and idle time of each rank"},
     TableEntry{"messages", Messages, "how many messages each rank sent to each (sender = row)"},
     TableEntry{"volume", Volume, "how many bytes each rank sent to each (sender = row)"},
     TableEntry{"waits", Waits, "who waited for whom, why, and what the late rank was doing"},
-    TableEntry{"imbalance", Imbalance, "how unevenly the ranks compute, what it costs and why"}};
+    TableEntry{"imbalance", Imbalance, "how unevenly the ranks compute, what it costs and why"},
+    TableEntry{"switches", SwitchesAnswer, "context switches and page faults of each thread"},
+    TableEntry{"syscalls", SystemCallsAnswer, "system calls by name: how many, how long, what moved",
+               true}};
 
 }  // namespace
 

@@ -24,6 +24,7 @@ enum class Defect {
   kOpenRecord,
   kUncommitted,
   kLostEvents,
+  kLostSwitches,
   kBadDefinition,
   kUndefinedRegion,
   kUndefinedName,

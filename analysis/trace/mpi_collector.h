@@ -26,6 +26,7 @@ class MpiCollector {
   std::uint32_t Defined(std::uint32_t communicator);
   const Communicator& At(std::uint32_t c) const { return trace_.communicators()[c]; }
   std::int64_t CallBegin(std::uint64_t ticks) const;
+  void Called(const SystemCall& r, std::uint64_t ticks);
   void Marked(const Mark& r, std::uint64_t ticks);
   void Send(const MpiSend& r, std::uint64_t ticks);
   void Receive(const MpiReceive& r, std::uint64_t ticks);

@@ -39,9 +39,17 @@ constexpr std::uint64_t BytesOf(RecordKind kind) {
       return sizeof(RegionMode);
     case RecordKind::kCountedEnter:
       return sizeof(CountedEnter);
+    case RecordKind::kContextSwitch:
+      return sizeof(ContextSwitch);
     default:
       return 0;
   }
+}
+
+/// A system call has up to six parameters.
+bool IsSoundCall(std::uint64_t words) {
+  constexpr std::uint64_t kLeast = sizeof(SystemCall) / sizeof(EventWord);
+  return words >= kLeast && words <= kLeast + 6;
 }
 
 }  // namespace
@@ -50,6 +58,7 @@ std::uint64_t SoundRecordWords(const EventWord* word, const EventWord* end) {
   const std::uint64_t words = WordsOf(*word);
   const std::uint64_t expected = BytesOf(KindOf(*word));
   if (words == 0) return 0;
+  if (KindOf(*word) == RecordKind::kSystemCall && !IsSoundCall(words)) return 0;
   if (expected != 0 && words * sizeof(EventWord) != expected) return 0;
   return words <= static_cast<std::uint64_t>(end - word) ? words : 0;
 }

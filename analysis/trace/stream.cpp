@@ -309,7 +309,8 @@ FoundChunks FindChunks(Stream& stream) {
     ChunkHeader h;
     std::memcpy(&h, file.data() + offset, sizeof(h));
     const bool valid = h.magic == kChunkMagic && h.bytes != 0 && h.bytes % kGranuleBytes == 0 &&
-                       (h.kind == ChunkKind::kEvents || h.kind == ChunkKind::kDefinitions);
+                       (h.kind == ChunkKind::kEvents || h.kind == ChunkKind::kDefinitions ||
+                        h.kind == ChunkKind::kKernel);
     if (!valid) {
       if (h.magic != 0) stream.health.Add(Defect::kBadChunk, stream.file_name);
       offset += IsBeingCleared(h) ? SoundBytes(file, offset, h.bytes) : kGranuleBytes;
@@ -328,7 +329,7 @@ FoundChunks FindChunks(Stream& stream) {
       ThreadStream& t = found.threads[h.thread];
       t.thread = h.thread;
       t.tid = h.tid;
-      t.chunks.push_back(chunk);
+      (h.kind == ChunkKind::kKernel ? t.kernel : t.chunks).push_back(chunk);
     }
     offset += h.bytes;
   }
@@ -469,8 +470,10 @@ std::unique_ptr<Stream> ReadStream(const std::string& path, TraceHealth& health)
   std::uint64_t lost = 0;  // as the chunks tell it, when the process could not say so itself
   for (auto& [number, thread] : found.threads) {
     OrderChunks(thread.chunks, *stream);
+    OrderChunks(thread.kernel, *stream);
     MendTimes(thread.chunks, *stream);
-    lost += thread.chunks.back().lost < (std::uint64_t{1} << 48) ? thread.chunks.back().lost : 0;
+    if (!thread.chunks.empty())
+      lost += thread.chunks.back().lost < (std::uint64_t{1} << 48) ? thread.chunks.back().lost : 0;
     stream->threads.push_back(std::move(thread));
   }
   OrderChunks(found.definitions, *stream);

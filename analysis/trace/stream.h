@@ -55,6 +55,7 @@ struct ThreadStream {
   std::uint32_t tid = 0;
   std::string name;
   std::vector<Chunk> chunks;
+  std::vector<Chunk> kernel;  // what the kernel told of it (kernel.h), in order
 
   std::uint64_t Bytes() const {
     std::uint64_t bytes = 0;

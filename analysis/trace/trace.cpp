@@ -12,6 +12,7 @@
 
 #include "analysis/trace/demangle.h"
 #include "analysis/trace/input_error.h"
+#include "analysis/trace/kernel.h"
 #include "analysis/trace/parallel.h"
 #include "analysis/trace/ranks.h"
 #include "analysis/trace/symbols.h"
@@ -40,6 +41,24 @@ struct EdgeVisitor {
   void Function(std::uint32_t, bool, std::uint64_t ticks) { See(ticks); }
   void Record(const EventWord*, std::uint64_t ticks) { See(ticks); }
 };
+
+/// The same of a thread without events of its own, of which only the kernel told.
+bool FindKernelEdges(const Stream& stream, const ThreadStream& thread, Location& location) {
+  std::uint64_t first = kNoTickLimit;
+  std::uint64_t last = 0;
+  ScanCounts counts;
+  ForEachKernelRecord(thread, counts, [&](const EventWord* word, std::uint64_t raw_ns) {
+    first = std::min(first, raw_ns);
+    const std::uint64_t in_ns =
+        KindOf(*word) == RecordKind::kContextSwitch ? RecordAt<ContextSwitch>(word).in_ns : 0;
+    last = std::max({last, raw_ns, in_ns});
+  });
+  if (first > last) return false;
+  const RawClock clock(stream, 0);
+  location.first_ticks = clock.Ticks(first);
+  location.last_ticks = std::max(location.first_ticks, clock.Ticks(last));
+  return true;
+}
 
 /// Times of a thread's first and last event, read from its outer chunks only; false: no event.
 bool FindEdges(const ThreadStream& thread, std::uint32_t region_count, Location& location) {
@@ -158,7 +177,9 @@ void Trace::PlaceLocations() {
       l.rank = processes_[p].rank;
       l.process = processes_[p].process;
       l.thread = static_cast<int>(thread.thread & 0x7fffffff);
-      if (!FindEdges(thread, processes_[p].RegionCount(), l)) continue;
+      if (!FindEdges(thread, processes_[p].RegionCount(), l) &&
+          !FindKernelEdges(*processes_[p].stream, thread, l))
+        continue;
       zero_ns = std::min(zero_ns, clocks_.maps[p].Ns(l.first_ticks));
       locations_.push_back(l);
     }
@@ -174,6 +195,18 @@ void Trace::PlaceLocations() {
     span_ns_ = std::max(span_ns_, l.end_ns);
   }
   counts_.resize(locations_.size());
+}
+
+/// What the rings of context switches had no room for.
+void Trace::FindKernelLosses() {
+  for (const Location& l : locations_) {
+    if (l.stream->kernel.empty()) continue;
+    double lost = 0;
+    for (const KernelCount& count : ReadKernel(*this, l).counts)
+      if (names_[count.name].text == "switches lost") lost = std::max(lost, count.value);
+    if (lost >= 1 && lost < 1e15)
+      health_.Add(Defect::kLostSwitches, ProcessOf(l).where, static_cast<std::uint64_t>(lost));
+  }
 }
 
 void Trace::ReadStreams(const std::vector<std::string>& files) {
@@ -223,6 +256,7 @@ Trace Trace::Open(const std::string& path, ReadMeter* meter) {
   NameCode(trace.streams_, trace.health_);
   trace.UnifyDefinitions();
   trace.PlaceLocations();
+  trace.FindKernelLosses();
   std::vector<bool> seen;
   for (const Process& p : trace.processes_) {
     const int world = p.in_world ? FirstRankOf(p) + p.stream->world->world_size : 0;
@@ -326,7 +360,27 @@ std::uint64_t Trace::EventCount() const {
   return events;
 }
 
+EventCursor::EventCursor(const Trace& trace, const Location& location)
+    : trace_(&trace), location_(&location), process_(&trace.ProcessOf(location)) {
+  if (location.stream->kernel.empty()) return;
+  const RawClock clock(*process_->stream, trace.NsPerTick(location));
+  ForEachKernelRecord(*location.stream, counts_,
+                      [&](const EventWord* word, std::uint64_t raw_ns) {
+                        kernel_.push_back({clock.Ticks(raw_ns), word, 0, false, true});
+                      });
+  std::ranges::stable_sort(kernel_, {}, &Event::ticks);
+}
+
 const Event* EventCursor::Next() {
+  const bool has_event = FillBatch();
+  if (next_kernel_ < kernel_.size() &&
+      (!has_event || kernel_[next_kernel_].ticks < batch_[next_].ticks))
+    return &kernel_[next_kernel_++];
+  return has_event ? &batch_[next_++] : nullptr;
+}
+
+/// Whether there is an event in the batch.
+bool EventCursor::FillBatch() {
   struct Collector {
     std::vector<Event>& events;
     const std::vector<std::uint32_t>& regions;
@@ -344,10 +398,10 @@ const Event* EventCursor::Next() {
     const std::size_t chunk = at_.chunk;
     if (!ScanSome(*location_->stream, process_->RegionCount(), kBatchWords, at_, counts_,
                   collector))
-      return nullptr;
+      return false;
     if (at_.chunk != chunk) trace_->TellRead(location_->stream->chunks[chunk].Bytes());
   }
-  return &batch_[next_++];
+  return true;
 }
 
 }  // namespace stipple

@@ -153,6 +153,7 @@ class Trace {
   void ReadStreams(const std::vector<std::string>& files);
   void UnifyDefinitions();
   void PlaceLocations();
+  void FindKernelLosses();
 
   std::string path_;
   std::vector<std::unique_ptr<Stream>> streams_;
@@ -176,14 +177,14 @@ struct Event {
   const EventWord* record = nullptr;  // null: a function event
   std::uint32_t region = 0;           // of the archive
   bool leave = false;
+  bool kernel = false;  // a record of the kernel's chunks
 };
 
 /// Reads the events of one location one by one, in batches of the one decoder.
 class EventCursor {
  public:
-  EventCursor(const Trace& trace, const Location& location)
-      : trace_(&trace), location_(&location), process_(&trace.ProcessOf(location)) {}
-  /// Null: no more.
+  EventCursor(const Trace& trace, const Location& location);
+  /// Null: no more. What the kernel told stands between the events by its time.
   const Event* Next();
   const Location& location() const { return *location_; }
 
@@ -193,8 +194,12 @@ class EventCursor {
   const Process* process_;
   ScanPosition at_;
   ScanCounts counts_;
+  bool FillBatch();
+
   std::vector<Event> batch_;
   std::size_t next_ = 0;
+  std::vector<Event> kernel_;  // by time
+  std::size_t next_kernel_ = 0;
 };
 
 }  // namespace stipple
