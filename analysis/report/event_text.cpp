@@ -70,7 +70,8 @@ std::string SystemCallText(const Trace& trace, const Process& p, const EventWord
   if (r.name == 0 && entry != nullptr) count = std::min<std::size_t>(count, entry->parameters);
   std::string text = NameOf(trace, p, r) + "(";
   for (std::size_t i = 0; i < count; ++i) {
-    const auto value = static_cast<std::int64_t>(record[sizeof(SystemCall) / sizeof(EventWord) + i]);
+    const auto value =
+        static_cast<std::int64_t>(record[sizeof(SystemCall) / sizeof(EventWord) + i]);
     constexpr std::int64_t kLikelyAddress = std::int64_t{1} << 32;
     text += i == 0 ? "" : ", ";
     text += value >= kLikelyAddress ? fmt::format("{:#x}", value) : std::to_string(value);
@@ -83,9 +84,10 @@ std::string SystemCallText(const Trace& trace, const Process& p, const EventWord
 
 std::string SwitchText(const ContextSwitch& r) {
   const char* why = r.reason == SwitchReason::kBlocked ? "blocked" : "preempted";
-  std::string text = r.in_ns == 0 ? fmt::format("{} until the end", why)
-                                  : fmt::format("{} for {}", why,
-                                                FormatSeconds(static_cast<double>(r.away_ns) * 1e-9));
+  std::string text =
+      r.in_ns == 0
+          ? fmt::format("{} until the end", why)
+          : fmt::format("{} for {}", why, FormatSeconds(static_cast<double>(r.away_ns) * 1e-9));
   if (r.count > 1) text += fmt::format(" in {} times", r.count);
   return text + (r.in_cpu == r.out_cpu ? fmt::format(", processor {}", r.in_cpu)
                                        : fmt::format(", processor {} to {}", r.out_cpu, r.in_cpu));

@@ -45,8 +45,8 @@ std::vector<std::string> NotRecordedTexts(const Trace& trace) {
   std::vector<std::string> texts;
   for (const Recorded& r : RecordedOf(trace)) {
     if (r.available || std::ranges::find(kAskedFor, r.what) == kAskedFor.end()) continue;
-    texts.push_back(fmt::format("{} could not be recorded{}", r.what,
-                                r.error == 0 ? "" : ": " + r.Reason()));
+    texts.push_back(
+        fmt::format("{} could not be recorded{}", r.what, r.error == 0 ? "" : ": " + r.Reason()));
   }
   return texts;
 }

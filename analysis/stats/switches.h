@@ -11,10 +11,10 @@
 
 namespace stipple {
 
-/// One row per thread of which the kernel told: rank, process, thread, switches, blocked, blocked_s,
-/// preempted, preempted_s, migrations, longest_s, page_faults, major_page_faults. A switch counts in
-/// the span in which it began. Where the kernel refused the switches themselves it still counted
-/// them: then there are no times. `headline` says it in a sentence.
+/// One row per thread of which the kernel told: rank, process, thread, switches, blocked,
+/// blocked_s, preempted, preempted_s, migrations, longest_s, page_faults, major_page_faults. A
+/// switch counts in the span in which it began. Where the kernel refused the switches themselves it
+/// still counted them: then there are no times. `headline` says it in a sentence.
 Table SwitchesTable(const Trace& trace, const Selection& selection, std::string& headline);
 
 }  // namespace stipple

@@ -135,8 +135,7 @@ Table SystemCallsTable(const Trace& trace, const Selection& selection, bool per_
                        std::string& headline) {
   Table table{"syscalls", TableShape::kRows, {}, {}};
   if (per_rank) table.columns.push_back({"rank"});
-  for (const char* name :
-       {"call", "count", "seconds", "bytes", "errors", "in_mpi", "longest_s"})
+  for (const char* name : {"call", "count", "seconds", "bytes", "errors", "in_mpi", "longest_s"})
     table.columns.push_back({name});
   const NamedTotals named = TotalsOf(trace, selection, per_rank);
   std::vector<NamedCall> rows(named.begin(), named.end());

@@ -11,9 +11,9 @@
 
 namespace stipple {
 
-/// Rows (rank,) call, count, seconds, bytes, errors, in_mpi, longest_s, most time first. A call counts
-/// in the span in which it was entered; `in_mpi`: calls that an MPI call made. Bytes are those that
-/// reads and writes moved; none for other calls. `headline` says it in a sentence.
+/// Rows (rank,) call, count, seconds, bytes, errors, in_mpi, longest_s, most time first. A call
+/// counts in the span in which it was entered; `in_mpi`: calls that an MPI call made. Bytes are
+/// those that reads and writes moved; none for other calls. `headline` says it in a sentence.
 Table SystemCallsTable(const Trace& trace, const Selection& selection, bool per_rank,
                        std::string& headline);
 

@@ -106,8 +106,8 @@ constexpr std::array kTables = {
     TableEntry{"waits", Waits, "who waited for whom, why, and what the late rank was doing"},
     TableEntry{"imbalance", Imbalance, "how unevenly the ranks compute, what it costs and why"},
     TableEntry{"switches", SwitchesAnswer, "context switches and page faults of each thread"},
-    TableEntry{"syscalls", SystemCallsAnswer, "system calls by name: how many, how long, what moved",
-               true}};
+    TableEntry{"syscalls", SystemCallsAnswer,
+               "system calls by name: how many, how long, what moved", true}};
 
 }  // namespace
 

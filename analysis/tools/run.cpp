@@ -54,8 +54,9 @@ std::optional<RunOptions> ParseRun(const Arguments& arguments) {
   app.add_flag("--paused", options.paused,
                "begin switched off; stipple_start() or SIGUSR2 switches on");
   app.add_flag("--switches", options.switches, "record context switches and page faults");
-  app.add_option("--syscalls", options.syscalls,
-                 "record system calls: none, io (calls of libc that can block or move data), or all")
+  app.add_option(
+         "--syscalls", options.syscalls,
+         "record system calls: none, io (calls of libc that can block or move data), or all")
       ->type_name("WHICH");
   const auto dashes = std::ranges::find(arguments, "--");
   if (!Parse(app, {arguments.begin(), dashes})) return std::nullopt;
@@ -156,7 +157,8 @@ std::vector<std::string> Prepare(const RunOptions& options, const std::string& p
   const std::string all = own == nullptr || *own == '\0' ? preload : preload + ":" + own;
   // Asked before the runtime is preloaded: the launcher's version is not to be recorded.
   const char* list = std::getenv("OMPI_MCA_mca_base_env_list");
-  std::vector<std::string> variables = {"LD_PRELOAD", "STIPPLE_ARCHIVE", "STIPPLE_CLOCK", "ASAN_OPTIONS"};
+  std::vector<std::string> variables = {"LD_PRELOAD", "STIPPLE_ARCHIVE", "STIPPLE_CLOCK",
+                                        "ASAN_OPTIONS"};
   const auto set_or_unset = [&variables](const char* name, const std::string& value) {
     if (value.empty()) {
       unsetenv(name);

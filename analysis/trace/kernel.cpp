@@ -97,8 +97,8 @@ KernelAccount ReadKernel(const Trace& trace, const Location& location) {
       a.in_ns = a.is_back ? std::max(a.out_ns, time(r.in_ns)) : std::max(a.out_ns, trace.SpanNs());
       a.away_ns = a.in_ns - a.out_ns;
       if (r.count > 1)
-        a.away_ns = static_cast<std::int64_t>(
-            std::min(static_cast<std::uint64_t>(a.away_ns), r.away_ns));
+        a.away_ns =
+            static_cast<std::int64_t>(std::min(static_cast<std::uint64_t>(a.away_ns), r.away_ns));
       a.count = std::max(r.count, 1u);
       a.blocked = r.reason == SwitchReason::kBlocked;
       a.migrated = r.in_cpu != r.out_cpu;
@@ -112,9 +112,8 @@ KernelAccount ReadKernel(const Trace& trace, const Location& location) {
 
 bool HasRecorded(const Trace& trace, const Location& location, std::string_view what) {
   const auto& all = trace.ProcessOf(location).stream->availability;
-  return std::ranges::any_of(all, [what](const AvailabilityDefinition& a) {
-    return a.what == what && a.available;
-  });
+  return std::ranges::any_of(
+      all, [what](const AvailabilityDefinition& a) { return a.what == what && a.available; });
 }
 
 const SystemCallEntry* SystemCallOf(std::uint32_t number) {
@@ -131,8 +130,9 @@ std::string NameOf(const Trace& trace, const Process& process, const SystemCall&
 
 bool MovesBytes(std::uint32_t number) {
   constexpr std::array<std::string_view, 16> kMovers = {
-      "read",     "write",    "pread64", "pwrite64", "readv",   "writev",  "sendto",   "recvfrom",
-      "sendmsg",  "recvmsg",  "preadv",  "pwritev",  "preadv2", "pwritev2", "sendfile", "copy_file_range"};
+      "read",    "write",    "pread64",  "pwrite64",       "readv",  "writev",
+      "sendto",  "recvfrom", "sendmsg",  "recvmsg",        "preadv", "pwritev",
+      "preadv2", "pwritev2", "sendfile", "copy_file_range"};
   const SystemCallEntry* entry = SystemCallOf(number);
   return entry != nullptr && std::ranges::find(kMovers, entry->name) != kMovers.end();
 }

@@ -55,8 +55,8 @@ struct KernelAccount {
 /// Everything that the kernel told of one location.
 KernelAccount ReadKernel(const Trace& trace, const Location& location);
 
-/// Calls `record(word, raw_ns)` for each sound record of the kernel's chunks; what is damaged goes to
-/// `counts`.
+/// Calls `record(word, raw_ns)` for each sound record of the kernel's chunks; what is damaged goes
+/// to `counts`.
 void ForEachKernelRecord(const ThreadStream& thread, ScanCounts& counts,
                          const std::function<void(const EventWord*, std::uint64_t)>& record);
 

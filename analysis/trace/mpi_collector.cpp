@@ -32,7 +32,8 @@ void MpiCollector::Record(const EventWord* record, std::uint64_t ticks) {
     out_.undefined_names += process_.NameOf(RecordAt<Counter>(record).name) == 0;
     return;
   }
-  if (KindOf(*record) == RecordKind::kSystemCall) return Called(RecordAt<SystemCall>(record), ticks);
+  if (KindOf(*record) == RecordKind::kSystemCall)
+    return Called(RecordAt<SystemCall>(record), ticks);
   if (!process_.in_world) return;
   switch (KindOf(*record)) {
     case RecordKind::kMpiSend:
@@ -77,8 +78,7 @@ std::int64_t MpiCollector::CallBegin(std::uint64_t ticks) const {
 void MpiCollector::Called(const SystemCall& r, std::uint64_t ticks) {
   if (depth_ > 0 || !location_.IsMain()) return;
   const std::uint64_t enter = std::clamp(r.enter_ticks, location_.first_ticks, ticks);
-  out_.system_calls.push_back(
-      {trace_.TimeNs(location_, enter), trace_.TimeNs(location_, ticks)});
+  out_.system_calls.push_back({trace_.TimeNs(location_, enter), trace_.TimeNs(location_, ticks)});
 }
 
 void MpiCollector::Marked(const Mark& r, std::uint64_t ticks) {

@@ -364,10 +364,9 @@ EventCursor::EventCursor(const Trace& trace, const Location& location)
     : trace_(&trace), location_(&location), process_(&trace.ProcessOf(location)) {
   if (location.stream->kernel.empty()) return;
   const RawClock clock(*process_->stream, trace.NsPerTick(location));
-  ForEachKernelRecord(*location.stream, counts_,
-                      [&](const EventWord* word, std::uint64_t raw_ns) {
-                        kernel_.push_back({clock.Ticks(raw_ns), word, 0, false, true});
-                      });
+  ForEachKernelRecord(*location.stream, counts_, [&](const EventWord* word, std::uint64_t raw_ns) {
+    kernel_.push_back({clock.Ticks(raw_ns), word, 0, false, true});
+  });
   std::ranges::stable_sort(kernel_, {}, &Event::ticks);
 }
 

@@ -124,11 +124,11 @@ void NoteWaste(Thread& thread, std::uint64_t slot, std::uint64_t bytes) {
     thread.waste = slot;
 }
 
-/// Takes the thread's next chunk and decides whether its events step; false if recording has stopped.
+/// Takes the thread's next chunk and decides whether its events step; false if recording has
+/// stopped.
 bool TakeNextChunk(Process& process, Thread& thread, std::uint64_t bytes, std::uint64_t ticks) {
-  const bool slow =
-      thread.chunk == nullptr ||
-      ticks - reinterpret_cast<const ChunkHeader*>(thread.chunk)->ticks > kSlowTicks;
+  const bool slow = thread.chunk == nullptr ||
+                    ticks - reinterpret_cast<const ChunkHeader*>(thread.chunk)->ticks > kSlowTicks;
   if (!NextChunk(process, thread, bytes, ticks)) return false;
   Tell(&stipple_observer::chunk_taken);
   if (slow) BeginStepping(thread, ticks);
@@ -197,8 +197,8 @@ std::uint64_t AppendEvent(std::uint32_t region, bool leave) {
 }
 
 /// In the first round of key destructors the thread's function has been left, by whatever way. The
-/// last round ends the thread: what other keys' destructors do until then still belongs to it. Events
-/// after it still find the stream.
+/// last round ends the thread: what other keys' destructors do until then still belongs to it.
+/// Events after it still find the stream.
 void EndThread(void* pointer) {
   auto* thread = static_cast<Thread*>(pointer);
   // Zeroed: a forked child's, which has not recorded.

@@ -59,8 +59,8 @@ static_assert(sizeof(FileHeader) == 688);
 enum class ChunkKind : std::uint32_t {
   kEvents = 1,       // of one thread, in the order of the slots
   kDefinitions = 2,  // of the process: definitions, clock readings, losses, the end; never recycled
-  kKernel = 3,  // of one thread, what the kernel tells of it: ContextSwitch, Counter; their times are
-                // nanoseconds of CLOCK_MONOTONIC_RAW
+  kKernel = 3,  // of one thread, what the kernel tells of it: ContextSwitch, Counter; their times
+                // are nanoseconds of CLOCK_MONOTONIC_RAW
 };
 
 /// First bytes of a chunk.
@@ -390,7 +390,8 @@ struct SystemCall {
   std::uint64_t enter_ticks;
   std::int64_t result;   // as the kernel gives it: an error is -errno
   std::uint32_t number;  // of the kernel, x86-64
-  std::uint32_t name;    // DefineName of the libc function if that is called otherwise (sleep); else 0
+  std::uint32_t
+      name;  // DefineName of the libc function if that is called otherwise (sleep); else 0
 };
 static_assert(sizeof(SystemCall) == 40);
 
