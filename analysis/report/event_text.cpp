@@ -2,8 +2,12 @@
 #include "analysis/report/event_text.h"
 
 #include <fmt/format.h>
+#include <string.h>
+
+#include <algorithm>
 
 #include "analysis/stats/number.h"
+#include "analysis/trace/kernel.h"
 
 namespace stipple {
 namespace {
@@ -95,6 +99,37 @@ std::string ModeText(const Trace& trace, const Process& p, const RegionMode& r) 
                      RegionOfProcess(trace, p, r.region).name, NameOf(r.mode), r.visits);
 }
 
+/// "read(3, 0x7ffe0010, 4096) = 12"
+std::string SystemCallText(const Trace& trace, const Process& p, const EventWord* record) {
+  const auto r = RecordAt<SystemCall>(record);
+  std::size_t count = WordsOf(*record) - sizeof(SystemCall) / sizeof(EventWord);
+  const SystemCallEntry* entry = SystemCallOf(r.number);
+  if (r.name == 0 && entry != nullptr) count = std::min<std::size_t>(count, entry->parameters);
+  std::string text = NameOf(trace, p, r) + "(";
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto value =
+        static_cast<std::int64_t>(record[sizeof(SystemCall) / sizeof(EventWord) + i]);
+    constexpr std::int64_t kLikelyAddress = std::int64_t{1} << 32;
+    text += i == 0 ? "" : ", ";
+    text += value >= kLikelyAddress ? fmt::format("{:#x}", value) : std::to_string(value);
+  }
+  constexpr std::int64_t kLastError = -4095;
+  if (r.result >= 0 || r.result < kLastError) return text + fmt::format(") = {}", r.result);
+  const char* error = strerrorname_np(static_cast<int>(-r.result));
+  return text + fmt::format(") = -1 {}", error != nullptr ? error : std::to_string(-r.result));
+}
+
+std::string SwitchText(const ContextSwitch& r) {
+  const char* why = r.reason == SwitchReason::kBlocked ? "blocked" : "preempted";
+  std::string text =
+      r.in_ns == 0
+          ? fmt::format("{} until the end", why)
+          : fmt::format("{} for {}", why, FormatSeconds(static_cast<double>(r.away_ns) * 1e-9));
+  if (r.count > 1) text += fmt::format(" in {} times", r.count);
+  return text + (r.in_cpu == r.out_cpu ? fmt::format(", processor {}", r.in_cpu)
+                                       : fmt::format(", processor {} to {}", r.out_cpu, r.in_cpu));
+}
+
 /// Records that depend on timing.
 std::string TimingText(const Trace& trace, const Process& p, const EventWord* record) {
   switch (KindOf(*record)) {
@@ -114,6 +149,10 @@ std::string TimingText(const Trace& trace, const Process& p, const EventWord* re
       return ModeText(trace, p, RecordAt<RegionMode>(record));
     case RecordKind::kTimeStamp:
       return "time stamp";
+    case RecordKind::kSystemCall:
+      return SystemCallText(trace, p, record);
+    case RecordKind::kContextSwitch:
+      return SwitchText(RecordAt<ContextSwitch>(record));
     case RecordKind::kJumpPoint:
       return "jump point";
     case RecordKind::kUnwound:
@@ -148,7 +187,7 @@ std::string CanonicalText(const Trace& trace, const Location& location, const Ev
   if (event.record == nullptr)
     return std::string(event.leave ? "leave " : "enter ")
         .append(trace.regions()[event.region].name);
-  return StableText(trace, trace.ProcessOf(location), event.record);
+  return event.kernel ? "" : StableText(trace, trace.ProcessOf(location), event.record);
 }
 
 std::string EventText(const Trace& trace, const Location& location, const Event& event) {

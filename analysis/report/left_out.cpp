@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "analysis/report/recorded.h"
 #include "analysis/stats/number.h"
 
 namespace stipple {
@@ -113,6 +114,7 @@ std::vector<std::string> LeftOutTexts(const Trace& trace) {
   if (std::ranges::any_of(trace.processes(), RanOutOfIds))
     texts.push_back(fmt::format("more than {}: those that came later have no id and are left out",
                                 FormatCount(std::uint64_t{kMaxRegion}, "function")));
+  for (std::string& text : NotRecordedTexts(trace)) texts.push_back(std::move(text));
   return texts;
 }
 

@@ -74,15 +74,14 @@ std::string CellCsv(const Cell& cell, const Column& column) {
     out += '"';
     return out;
   };
-  return std::visit(Match{[](std::monostate) { return std::string(); },
-                          [](std::int64_t v) { return fmt::format("{}", v); },
-                          [&column](double v) {
-                            return IsSeconds(column) ? fmt::format("{:.9f}", v)
-                                                     : fmt::format("{}", v);
-                          },
-                          quoted,
-                          [&quoted](const std::vector<std::string>& v) { return quoted(Joined(v)); }},
-                    cell);
+  return std::visit(
+      Match{[](std::monostate) { return std::string(); },
+            [](std::int64_t v) { return fmt::format("{}", v); },
+            [&column](double v) {
+              return IsSeconds(column) ? fmt::format("{:.9f}", v) : fmt::format("{}", v);
+            },
+            quoted, [&quoted](const std::vector<std::string>& v) { return quoted(Joined(v)); }},
+      cell);
 }
 
 Json CellJson(const Cell& cell) {

@@ -46,8 +46,10 @@ Analysis::Analysis(const Trace& of) : trace(of), profiles(of.locations().size())
   for (const std::vector<BudgetStep>& some : steps_of)
     steps.insert(steps.end(), some.begin(), some.end());
   std::ranges::stable_sort(steps, {}, &BudgetStep::time_ns);
+  for (LocationActivity& a : activities) kernel.push_back(std::move(a.system_calls));
   mpi = JoinActivity(trace, std::move(activities));
   waits = FindWaits(trace, mpi);
+  kernel = KernelTimeOf(trace, std::move(kernel), mpi.calls);
   health = trace.Health();
   for (const Location& l : trace.locations()) {
     const std::string& where = trace.ProcessOf(l).where;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "analysis/stats/kernel_time.h"
 #include "analysis/stats/waits.h"
 #include "analysis/trace/health.h"
 #include "analysis/trace/mpi_activity.h"
@@ -74,6 +75,7 @@ struct Analysis {
   MpiActivity mpi;
   std::vector<CallWait> waits;    // by call of mpi
   std::vector<BudgetStep> steps;  // in order of time
+  KernelTime kernel;              // by location
   TraceHealth health;             // all that is wrong with the archive
 };
 

@@ -26,6 +26,13 @@ std::vector<RankStates> StatesOf(const Analysis& analysis, const Selection& sele
     s.rank = rank;
     s.user_ns =
         selection.Clamp(l->end_ns) - selection.Clamp(l->begin_ns) - s.idle_ns - s.message_ns;
+    if (HasKernelTime(trace, *l)) {
+      std::int64_t system_ns = 0;
+      for (const CallSpan& span : analysis.kernel[l->index])
+        system_ns += selection.Clamp(span.end_ns) - selection.Clamp(span.begin_ns);
+      s.system_ns = system_ns;
+      s.user_ns -= system_ns;
+    }
     states.push_back(s);
   }
   return states;

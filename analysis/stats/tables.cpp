@@ -15,6 +15,8 @@
 #include "analysis/stats/overhead.h"
 #include "analysis/stats/profile.h"
 #include "analysis/stats/states.h"
+#include "analysis/stats/switches.h"
+#include "analysis/stats/syscalls.h"
 #include "analysis/trace/demangle.h"
 
 namespace stipple {
@@ -142,6 +144,18 @@ TableAnswer Channels(const Analysis& analysis, const Selection& selection, bool)
   return {std::move(table), std::move(headline)};
 }
 
+TableAnswer SwitchesAnswer(const Analysis& analysis, const Selection& selection, bool) {
+  TableAnswer answer;
+  answer.table = SwitchesTable(analysis.trace, selection, answer.headline);
+  return answer;
+}
+
+TableAnswer SystemCallsAnswer(const Analysis& analysis, const Selection& selection, bool per_rank) {
+  TableAnswer answer;
+  answer.table = SystemCallsTable(analysis.trace, selection, per_rank, answer.headline);
+  return answer;
+}
+
 constexpr std::array kTables = {
     TableEntry{"profile", Profile, "time and calls per region, most exclusive time first", true},
     TableEntry{"callpaths", CallPaths, "time, calls and messages per chain of calls, a tree"},
@@ -152,7 +166,10 @@ constexpr std::array kTables = {
     TableEntry{"imbalance", Imbalance, "how unevenly the ranks compute, what it costs and why"},
     TableEntry{"counters", Counters, "values of the program's own counters over time"},
     TableEntry{"channels", Channels, "messages between threads, and who waited for whom"},
-    TableEntry{"overhead", Overhead, "what recording each region cost, and time without it"}};
+    TableEntry{"overhead", Overhead, "what recording each region cost, and time without it"},
+    TableEntry{"switches", SwitchesAnswer, "context switches and page faults of each thread"},
+    TableEntry{"syscalls", SystemCallsAnswer,
+               "system calls by name: how many, how long, what moved", true}};
 
 }  // namespace
 

@@ -50,6 +50,18 @@ void AddRows(const Trace& trace, const Columns& columns, std::size_t count, Time
   }
 }
 
+void AddKernelTime(const Analysis& analysis, const Columns& columns,
+                   const std::map<int, std::size_t>& row_of_rank, Timeline& timeline) {
+  for (const Location& l : analysis.trace.locations()) {
+    if (!l.IsMain()) continue;
+    std::vector<StateShares>& row = timeline.rows[row_of_rank.at(l.rank)].columns;
+    for (const CallSpan& span : analysis.kernel[l.index]) {
+      columns.Add(row, Seconds(span.begin_ns), Seconds(span.end_ns), State::kUser, -1);
+      columns.Add(row, Seconds(span.begin_ns), Seconds(span.end_ns), State::kSystem);
+    }
+  }
+}
+
 void AddMessages(const Analysis& analysis, const std::map<int, std::size_t>& row_of_rank,
                  Timeline& timeline) {
   for (const SendEvent& s : analysis.mpi.sends) {
@@ -109,6 +121,7 @@ Timeline TimelineOf(const Analysis& analysis, double begin_s, double end_s, std:
     axis.Add(row, call_begin_s, arrival_s, State::kIdle);
     axis.Add(row, arrival_s, call_end_s, State::kMessage);
   }
+  AddKernelTime(analysis, axis, row_of_rank, timeline);
   for (TimelineRow& row : timeline.rows)
     for (StateShares& shares : row.columns)
       for (float& share : shares) share = std::clamp(share, 0.0F, 1.0F);

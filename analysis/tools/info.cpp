@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/report/left_out.h"
+#include "analysis/report/recorded.h"
 #include "analysis/report/text.h"
 #include "analysis/stats/analysis.h"
 #include "analysis/stats/number.h"
@@ -31,16 +32,20 @@ Json ClockJson(const Analysis& info) {
           {"reversed_messages", info.mpi.reversed}};
 }
 
-/// What was recorded and what could not be: of the processes together, "no" outweighs "yes".
+/// What was recorded and what could not be.
 Json RecordedJson(const Trace& trace) {
   Json recorded = Json::object();
-  for (const Process& p : trace.processes()) {
-    for (const AvailabilityDefinition& a : p.stream->availability) {
-      const std::string what(a.what);
-      recorded[what] = recorded.value(what, true) && a.available;
-    }
-  }
+  for (const Recorded& r : RecordedOf(trace)) recorded[r.what] = r.available;
   return recorded;
+}
+
+/// Why not.
+Json NotRecordedJson(const Trace& trace) {
+  Json reasons = Json::array();
+  for (const Recorded& r : RecordedOf(trace))
+    if (!r.available)
+      reasons.push_back({{"what", r.what}, {"errno", r.error}, {"reason", r.Reason()}});
+  return reasons;
 }
 
 /// Null: there was no filter.
@@ -105,6 +110,7 @@ std::string InfoJson(const Analysis& info) {
                      {"filter", FilterJson(trace)},
                      {"clock", ClockJson(info)},
                      {"recorded", RecordedJson(trace)},
+                     {"not_recorded", NotRecordedJson(trace)},
                      {"jobs", JobsJson(trace)},
                      {"running", info.health.CountOf(Defect::kStillRunning)},
                      {"problems", problems}};
@@ -143,6 +149,8 @@ std::string InfoText(const Analysis& info) {
                         FormatCount(m.matched.size(), "message"),
                         FormatCount(static_cast<std::int64_t>(m.unmatched.size())));
   text += fmt::format("clock      {}\n", ClockText(info));
+  if (const std::string recorded = RecordedText(trace); !recorded.empty())
+    text += fmt::format("recorded   {}\n", recorded);
   if (const Paused paused = LongestPaused(trace); paused.times != 0)
     text += fmt::format("paused     {}, {}\n", FormatSeconds(paused.seconds),
                         FormatCount(paused.times, "time"));

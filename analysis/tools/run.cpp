@@ -35,6 +35,8 @@ struct RunOptions {
   std::string filter;  // empty: none
   bool paused = false;
   std::string max_bytes;  // empty: no limit
+  bool switches = false;
+  std::string syscalls = "none";
   std::vector<std::string> command;
 };
 
@@ -58,6 +60,11 @@ std::optional<RunOptions> ParseRun(const Arguments& arguments) {
   app.add_option("--max-bytes", options.max_bytes,
                  "keep only the last part of the run: N bytes of events for each process (64M, 2G)")
       ->type_name("N");
+  app.add_flag("--switches", options.switches, "record context switches and page faults");
+  app.add_option(
+         "--syscalls", options.syscalls,
+         "record system calls: none, io (calls of libc that can block or move data), or all")
+      ->type_name("WHICH");
   const auto dashes = std::ranges::find(arguments, "--");
   if (!Parse(app, {arguments.begin(), dashes})) return std::nullopt;
   if (dashes == arguments.end() || dashes + 1 == arguments.end())
@@ -112,6 +119,11 @@ std::uint64_t ParseMaxBytes(const std::string& text) {
   return bytes;
 }
 
+void CheckSystemCalls(const std::string& which) {
+  if (which != "none" && which != "io" && which != "all")
+    throw InputError("--syscalls", fmt::format("'{}' is unknown; known: none, io, all", which));
+}
+
 /// Refuses a file that is no filter.
 void CheckFilter(const std::string& path) {
   std::error_code error;
@@ -156,7 +168,7 @@ bool MakeArchive(const fs::path& path, bool overwrite) {
 }
 
 /// The libraries to preload, before those that the user preloads.
-std::string Preload() {
+std::string Preload(const RunOptions& options) {
   const fs::path directory = LibraryDirectory();
   if (!fs::exists(directory / "libstipple.so"))
     throw InputError((directory / "libstipple.so").string(),
@@ -164,6 +176,8 @@ std::string Preload() {
   std::string preload = directory / "libstipple.so";
   if (fs::exists(directory / "libstipple-mpi.so"))
     preload += ":" + std::string(directory / "libstipple-mpi.so");
+  if (options.switches || options.syscalls != "none")
+    preload += ":" + std::string(directory / "libstipple-system.so");
   if (preload.find(' ') != std::string::npos)
     throw InputError(directory.string(), "LD_PRELOAD cannot name a path with a space in it");
   return preload;
@@ -195,6 +209,8 @@ std::vector<std::string> Prepare(const RunOptions& options, const std::string& p
   set_or_unset("STIPPLE_FILTER", options.filter.empty() ? "" : fs::absolute(options.filter));
   set_or_unset("STIPPLE_PAUSED", options.paused ? "1" : "");
   set_or_unset("STIPPLE_MAX_BYTES", options.max_bytes);
+  set_or_unset("STIPPLE_SWITCHES", options.switches ? "1" : "");
+  set_or_unset("STIPPLE_SYSCALLS", options.syscalls == "none" ? "" : options.syscalls);
   std::vector<std::string> command = options.command;
   if (list == nullptr) command = WithExports(command, variables, preload, IsOpenMpi);
   setenv("LD_PRELOAD", all.c_str(), 1);
@@ -271,13 +287,14 @@ int RunRun(const Arguments& arguments) {
   CheckClock(options->clock);
   if (!options->max_bytes.empty())
     options->max_bytes = std::to_string(ParseMaxBytes(options->max_bytes));
+  CheckSystemCalls(options->syscalls);
   if (!options->filter.empty()) CheckFilter(options->filter);
   if (options->archive.empty()) {
     const std::string& program = options->command[ProgramIndex(options->command)];
     options->archive = fs::path(program).filename().string() + ".stipple";
   }
   while (options->archive.size() > 1 && options->archive.back() == '/') options->archive.pop_back();
-  const std::string preload = Preload();
+  const std::string preload = Preload(*options);
   if (!MakeArchive(options->archive, options->overwrite)) return RunToEnd(options->command);
   // A program that does not listen yet, or a shell around it, must not die of the signal.
   const int status = RunToEnd(Prepare(*options, preload), options->paused ? SIGUSR2 : 0);

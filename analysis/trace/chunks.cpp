@@ -25,7 +25,7 @@ constexpr Layout kCompacted = {kFirstCompactedByte, kCompactedAlign, true};
 bool IsChunk(const ChunkHeader& h, const Layout& layout) {
   return h.magic == kChunkMagic && h.bytes != 0 && h.bytes % layout.align == 0 &&
          (h.kind == ChunkKind::kEvents || h.kind == ChunkKind::kDefinitions ||
-          (h.kind == ChunkKind::kCompacted && layout.compacted));
+          h.kind == ChunkKind::kKernel || (h.kind == ChunkKind::kCompacted && layout.compacted));
 }
 
 bool HasMagic(Bytes file, std::size_t offset) {
@@ -83,11 +83,11 @@ bool IsBeingCleared(const ChunkHeader& h) {
          h.bytes % kGranuleBytes == 0;
 }
 
-void Add(FoundChunks& found, const Chunk& chunk) {
+void Add(FoundChunks& found, const Chunk& chunk, ChunkKind kind) {
   ThreadStream& t = found.threads[chunk.thread];
   t.thread = chunk.thread;
   t.tid = chunk.tid;
-  t.chunks.push_back(chunk);
+  (kind == ChunkKind::kKernel ? t.kernel : t.chunks).push_back(chunk);
 }
 
 EventWord Load(const EventWord* word) { return __atomic_load_n(word, __ATOMIC_ACQUIRE); }
@@ -165,7 +165,7 @@ bool TakeThread(Stream& stream, std::vector<LiveChunk>& chunks, FoundChunks& fou
     if (step == 1) last = i;
   }
   for (std::size_t i = 0; i < last; ++i)
-    Add(found, ChunkAt(file, chunks[i].offset, chunks[i].header));
+    Add(found, ChunkAt(file, chunks[i].offset, chunks[i].header), ChunkKind::kEvents);
   for (std::size_t i = last; i < chunks.size(); ++i) {
     std::vector<EventWord> words;
     Chunk chunk = ChunkAt(file, chunks[i].offset, chunks[i].header);
@@ -173,7 +173,7 @@ bool TakeThread(Stream& stream, std::vector<LiveChunk>& chunks, FoundChunks& fou
     stream.copies.push_back(std::move(words));
     chunk.begin = stream.copies.back().data();
     chunk.end = chunk.begin + stream.copies.back().size();
-    Add(found, chunk);
+    Add(found, chunk, ChunkKind::kEvents);
     return true;
   }
   return false;
@@ -216,7 +216,7 @@ FoundChunks FindChunks(Stream& stream) {
     if (h.kind == ChunkKind::kDefinitions)
       found.definitions.push_back(chunk);
     else
-      Add(found, chunk);
+      Add(found, chunk, h.kind);
     if (offset + h.bytes > file.size()) stream.health.Add(Defect::kTruncatedFile, stream.file_name);
     offset += h.bytes;
   }
@@ -235,12 +235,15 @@ FoundChunks FindLiveChunks(Stream& stream, bool& whole) {
   const Bytes file = stream.file.bytes();
   const std::vector<std::size_t> places = PlacesOf(file);
   std::map<std::uint32_t, std::vector<LiveChunk>> threads;
+  FoundChunks found;
   for (std::size_t i = places.size(); i-- > 0;) {
     LiveChunk c{places[i], {}};
-    if (ReadLiveHeader(file, c) && c.header.kind == ChunkKind::kEvents)
-      threads[c.header.thread].push_back(c);
+    if (!ReadLiveHeader(file, c)) continue;
+    if (c.header.kind == ChunkKind::kEvents) threads[c.header.thread].push_back(c);
+    // These are written whole, or grow as definitions do.
+    if (c.header.kind == ChunkKind::kKernel)
+      Add(found, ChunkAt(file, c.offset, c.header), ChunkKind::kKernel);
   }
-  FoundChunks found;
   whole = true;
   for (auto& [number, chunks] : threads) {
     const bool taken = TakeThread(stream, chunks, found);

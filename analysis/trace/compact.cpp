@@ -205,10 +205,9 @@ class Compaction {
     NewFile file(work.to);
     int error = file.Begin(status.st_mode & 07777);
     if (error == 0) error = WriteStart(stream, file);
-    for (std::size_t i = 0; error == 0 && i < stream.definitions.size(); ++i) {
-      const std::string bytes = PlainBytes(stream.definitions[i]);
-      error = file.Write(bytes.data(), bytes.size());
-    }
+    if (error == 0) error = CopyChunks(stream.definitions, file);
+    for (const ThreadStream& t : stream.threads)
+      if (error == 0) error = CopyChunks(t.kernel, file);
     std::vector<const Chunk*> chunks;
     for (const ThreadStream& t : stream.threads)
       for (const Chunk& c : t.chunks) chunks.push_back(&c);
@@ -222,6 +221,16 @@ class Compaction {
     if (error == 0) work.bytes_after = file.written();
     if (error != 0 && !work.stopped)
       work.why_not = error == EBUSY ? "somebody else compacts it" : std::strerror(error);
+  }
+
+  /// As they are.
+  static int CopyChunks(std::span<const Chunk> chunks, NewFile& file) {
+    int error = 0;
+    for (std::size_t i = 0; error == 0 && i < chunks.size(); ++i) {
+      const std::string bytes = PlainBytes(chunks[i]);
+      error = file.Write(bytes.data(), bytes.size());
+    }
+    return error;
   }
 
   static int WriteStart(const Stream& stream, NewFile& file) {

@@ -42,7 +42,8 @@ std::uint64_t TicksWithoutStep(const FileHeader& h, const ClockStep& step, std::
 /// The last time that the stream knows of.
 std::uint64_t EndTicks(const Stream& stream) {
   std::uint64_t last = stream.end ? stream.end->ticks : 0;
-  for (const ThreadStream& t : stream.threads) last = std::max(last, t.chunks.back().ticks);
+  for (const ThreadStream& t : stream.threads)
+    if (!t.chunks.empty()) last = std::max(last, t.chunks.back().ticks);
   return last;
 }
 
@@ -51,7 +52,8 @@ std::uint64_t UntoldFrom(const Stream& stream) {
   std::uint64_t from = kMostTicks;
   for (const Loss& loss : stream.loss_records) from = std::min(from, loss.from_ticks);
   if (from != kMostTicks) return from;
-  for (const ThreadStream& t : stream.threads) from = std::min(from, t.chunks.back().ticks);
+  for (const ThreadStream& t : stream.threads)
+    if (!t.chunks.empty()) from = std::min(from, t.chunks.back().ticks);
   return from == kMostTicks ? stream.header.start_ticks : from;
 }
 

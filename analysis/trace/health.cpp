@@ -35,6 +35,8 @@ constexpr std::array kDefects = {
                 "events were begun and never committed"},
     DefectEntry{Defect::kLostEvents, "lost-event", "event could not be recorded",
                 "events could not be recorded"},
+    DefectEntry{Defect::kLostSwitches, "lost-switch", "context switch could not be recorded",
+                "context switches could not be recorded"},
     DefectEntry{Defect::kBadDefinition, "bad-definition", "definition is damaged",
                 "definitions are damaged"},
     DefectEntry{Defect::kUndefinedRegion, "undefined-region", "event of an undefined region",

@@ -26,6 +26,7 @@ enum class Defect {
   kOpenRecord,
   kUncommitted,
   kLostEvents,
+  kLostSwitches,
   kBadDefinition,
   kUndefinedRegion,
   kUndefinedName,

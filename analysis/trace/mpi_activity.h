@@ -87,6 +87,12 @@ struct MarkEvent {
   std::uint32_t location = 0;
 };
 
+/// A system call outside MPI.
+struct CallSpan {
+  std::int64_t begin_ns = 0;
+  std::int64_t end_ns = 0;
+};
+
 struct MpiActivity {
   std::vector<MpiCall> calls;          // by location, then time
   std::vector<SendEvent> sends;        // by channel, then order of posts; cancelled ones are gone
@@ -129,6 +135,7 @@ struct LocationActivity {
   std::vector<CollectiveEvent> collectives;
   std::vector<MarkEvent> marks;
   std::vector<ThreadMessageEnd> thread_messages;
+  std::vector<CallSpan> system_calls;  // of a main thread, by end
   std::uint64_t undefined_communicators = 0;
   std::uint64_t undefined_names = 0;
 };

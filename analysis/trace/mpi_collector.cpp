@@ -36,6 +36,8 @@ void MpiCollector::Record(const EventWord* record, std::uint64_t ticks) {
     out_.undefined_names += process_.NameOf(RecordAt<Counter>(record).name) == 0;
     return;
   }
+  if (KindOf(*record) == RecordKind::kSystemCall)
+    return Called(RecordAt<SystemCall>(record), ticks);
   if (!process_.in_world) return;
   switch (kind) {
     case RecordKind::kMpiSend:
@@ -75,6 +77,12 @@ std::uint32_t MpiCollector::Defined(std::uint32_t communicator) {
 
 std::int64_t MpiCollector::CallBegin(std::uint64_t ticks) const {
   return call_ == kNoIndex ? trace_.TimeNs(location_, ticks) : out_.calls[call_].begin_ns;
+}
+
+void MpiCollector::Called(const SystemCall& r, std::uint64_t ticks) {
+  if (depth_ > 0 || !location_.IsMain()) return;
+  const std::uint64_t enter = std::clamp(r.enter_ticks, location_.first_ticks, ticks);
+  out_.system_calls.push_back({trace_.TimeNs(location_, enter), trace_.TimeNs(location_, ticks)});
 }
 
 void MpiCollector::Marked(const Mark& r, std::uint64_t ticks) {

@@ -27,6 +27,7 @@ class MpiCollector {
   std::uint32_t Defined(std::uint32_t communicator);
   const Communicator& At(std::uint32_t c) const { return trace_.communicators()[c]; }
   std::int64_t CallBegin(std::uint64_t ticks) const;
+  void Called(const SystemCall& r, std::uint64_t ticks);
   void Marked(const Mark& r, std::uint64_t ticks);
   void Handed(const ThreadSend& r, std::uint64_t ticks);
   void Taken(const ThreadReceive& r, std::uint64_t ticks);

@@ -47,6 +47,8 @@ constexpr std::uint64_t BytesOf(RecordKind kind) {
       return sizeof(CountedEnter);
     case RecordKind::kClockStep:
       return sizeof(ClockStep);
+    case RecordKind::kContextSwitch:
+      return sizeof(ContextSwitch);
     default:
       return 0;
   }
@@ -84,6 +86,12 @@ bool IsWhole(const EventWord* word, std::uint64_t words) {
   }
 }
 
+/// A system call has up to six parameters.
+bool IsSoundCall(std::uint64_t words) {
+  constexpr std::uint64_t kLeast = sizeof(SystemCall) / sizeof(EventWord);
+  return words >= kLeast && words <= kLeast + 6;
+}
+
 }  // namespace
 
 void ChunkWords::Decode(const Chunk& stored, ScanCounts& counts) {
@@ -119,6 +127,7 @@ std::uint64_t SoundRecordWords(const EventWord* word, const EventWord* end) {
                                      ? OpenFramesBytes(word, end)
                                      : BytesOf(KindOf(*word));
   if (words == 0) return 0;
+  if (KindOf(*word) == RecordKind::kSystemCall && !IsSoundCall(words)) return 0;
   if (expected != 0 && words * sizeof(EventWord) != expected) return 0;
   if (words > static_cast<std::uint64_t>(end - word)) return 0;
   return IsWhole(word, words) ? words : 0;

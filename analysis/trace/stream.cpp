@@ -435,10 +435,12 @@ void ReadChunks(Stream& stream, FoundChunks found) {
   for (const Chunk& chunk : stream.definitions) ReadDefinitions(chunk, stream);
   for (ThreadStream& thread : stream.threads) {
     OrderChunks(thread.chunks, DropOverwritten(thread, stream), stream);
+    OrderChunks(thread.kernel, 0, stream);
     MendSteps(thread, stream);
     MendTimes(thread.chunks, stream);
   }
-  std::erase_if(stream.threads, [](const ThreadStream& t) { return t.chunks.empty(); });
+  std::erase_if(stream.threads,
+                [](const ThreadStream& t) { return t.chunks.empty() && t.kernel.empty(); });
   PlaceLosses(stream);
 }
 

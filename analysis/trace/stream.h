@@ -66,6 +66,7 @@ struct ThreadStream {
   std::string name;
   std::vector<Chunk> chunks;
   std::uint64_t end_limit = kMostTicks;  // no event of the last chunk is later
+  std::vector<Chunk> kernel;             // what the kernel told of it (kernel.h), in order
 
   std::uint64_t Bytes() const {
     std::uint64_t bytes = 0;

@@ -12,6 +12,7 @@
 
 #include "analysis/trace/demangle.h"
 #include "analysis/trace/input_error.h"
+#include "analysis/trace/kernel.h"
 #include "analysis/trace/parallel.h"
 #include "analysis/trace/ranks.h"
 #include "analysis/trace/symbols.h"
@@ -40,6 +41,24 @@ struct EdgeVisitor {
   void Function(std::uint32_t, bool, std::uint64_t ticks) { See(ticks); }
   void Record(const EventWord*, std::uint64_t ticks) { See(ticks); }
 };
+
+/// The same of a thread without events of its own, of which only the kernel told.
+bool FindKernelEdges(const Stream& stream, const ThreadStream& thread, Location& location) {
+  std::uint64_t first = kNoTickLimit;
+  std::uint64_t last = 0;
+  ScanCounts counts;
+  ForEachKernelRecord(thread, counts, [&](const EventWord* word, std::uint64_t raw_ns) {
+    first = std::min(first, raw_ns);
+    const std::uint64_t in_ns =
+        KindOf(*word) == RecordKind::kContextSwitch ? RecordAt<ContextSwitch>(word).in_ns : 0;
+    last = std::max({last, raw_ns, in_ns});
+  });
+  if (first > last) return false;
+  const RawClock clock(stream, 0);
+  location.first_ticks = clock.Ticks(first);
+  location.last_ticks = std::max(location.first_ticks, clock.Ticks(last));
+  return true;
+}
 
 /// Times of a thread's first and last event, read from its outer chunks only; false: no event.
 bool FindEdges(const ThreadStream& thread, std::uint32_t region_count, Location& location) {
@@ -171,7 +190,9 @@ void Trace::PlaceLocations() {
       l.rank = processes_[p].rank;
       l.process = processes_[p].process;
       l.thread = static_cast<int>(thread.thread & 0x7fffffff);
-      if (!FindEdges(thread, processes_[p].RegionCount(), l)) continue;
+      if (!FindEdges(thread, processes_[p].RegionCount(), l) &&
+          !FindKernelEdges(*processes_[p].stream, thread, l))
+        continue;
       zero_ns = std::min(zero_ns, clocks_.maps[p].Ns(l.first_ticks));
       locations_.push_back(l);
     }
@@ -208,7 +229,8 @@ void Trace::FindKeptPart(double first_ns) {
       kept.overwritten_events += o.events;
       kept.overwritten_bytes += o.bytes;
       const auto t = std::ranges::find(stream.threads, o.thread, &ThreadStream::thread);
-      const std::uint64_t from = t == stream.threads.end() ? o.from_ticks : t->chunks.front().ticks;
+      const bool gone = t == stream.threads.end() || t->chunks.empty();
+      const std::uint64_t from = gone ? o.from_ticks : t->chunks.front().ticks;
       from_ns = std::max(from_ns, clocks_.maps[p].Ns(from));
     }
   }
@@ -228,6 +250,18 @@ void Trace::AddLosses() {
     for (const LostSpan& loss : process.stream->losses)
       health_.Add(Defect::kLostEvents, process.where, loss.events,
                   ProblemSpan{time_ns(loss.from_ticks), time_ns(loss.to_ticks)});
+  }
+}
+
+/// What the rings of context switches had no room for.
+void Trace::FindKernelLosses() {
+  for (const Location& l : locations_) {
+    if (l.stream->kernel.empty()) continue;
+    double lost = 0;
+    for (const KernelCount& count : ReadKernel(*this, l).counts)
+      if (names_[count.name].text == "switches lost") lost = std::max(lost, count.value);
+    if (lost >= 1 && lost < 1e15)
+      health_.Add(Defect::kLostSwitches, ProcessOf(l).where, static_cast<std::uint64_t>(lost));
   }
 }
 
@@ -280,6 +314,7 @@ Trace Trace::Open(const std::string& path, ReadMeter* meter) {
   trace.UnifyDefinitions();
   trace.PlaceLocations();
   trace.AddLosses();
+  trace.FindKernelLosses();
   std::vector<bool> seen;
   for (const Process& p : trace.processes_) {
     const int world = p.in_world ? FirstRankOf(p) + p.stream->world->world_size : 0;
@@ -387,7 +422,26 @@ std::uint64_t Trace::EventCount() const {
   return events;
 }
 
+EventCursor::EventCursor(const Trace& trace, const Location& location)
+    : trace_(&trace), location_(&location), process_(&trace.ProcessOf(location)) {
+  if (location.stream->kernel.empty()) return;
+  const RawClock clock(*process_->stream, trace.NsPerTick(location));
+  ForEachKernelRecord(*location.stream, counts_, [&](const EventWord* word, std::uint64_t raw_ns) {
+    kernel_.push_back({clock.Ticks(raw_ns), word, 0, false, true});
+  });
+  std::ranges::stable_sort(kernel_, {}, &Event::ticks);
+}
+
 const Event* EventCursor::Next() {
+  const bool has_event = FillBatch();
+  if (next_kernel_ < kernel_.size() &&
+      (!has_event || kernel_[next_kernel_].ticks < batch_[next_].ticks))
+    return &kernel_[next_kernel_++];
+  return has_event ? &batch_[next_++] : nullptr;
+}
+
+/// Whether there is an event in the batch.
+bool EventCursor::FillBatch() {
   struct Collector {
     std::vector<Event>& events;
     const std::vector<std::uint32_t>& regions;
@@ -413,10 +467,10 @@ const Event* EventCursor::Next() {
     const std::size_t chunk = at_.chunk;
     if (!ScanSome(*location_->stream, process_->RegionCount(), kBatchWords, at_, counts_,
                   collector))
-      return nullptr;
+      return false;
     if (at_.chunk != chunk) trace_->TellRead(location_->stream->chunks[chunk].Bytes());
   }
-  return &batch_[next_++];
+  return true;
 }
 
 }  // namespace stipple

@@ -176,6 +176,7 @@ class Trace {
   void PlaceLocations();
   void FindKeptPart(double first_ns);
   void AddLosses();
+  void FindKernelLosses();
 
   std::string path_;
   std::vector<std::unique_ptr<Stream>> streams_;
@@ -205,14 +206,14 @@ struct Event {
   std::uint64_t earliest = 0;  // `ticks` lies between these; equal where a clock was read
   std::uint64_t latest = 0;
   const EventWord* counted = nullptr;  // the CountedEnter that this event is
+  bool kernel = false;                 // a record of the kernel's chunks
 };
 
 /// Reads the events of one location one by one, in batches of the one decoder.
 class EventCursor {
  public:
-  EventCursor(const Trace& trace, const Location& location)
-      : trace_(&trace), location_(&location), process_(&trace.ProcessOf(location)) {}
-  /// Null: no more.
+  EventCursor(const Trace& trace, const Location& location);
+  /// Null: no more. What the kernel told stands between the events by its time.
   const Event* Next();
   const Location& location() const { return *location_; }
 
@@ -222,9 +223,13 @@ class EventCursor {
   const Process* process_;
   ScanPosition at_;
   ScanCounts counts_;
+  bool FillBatch();
+
   UnclockedRun run_;  // the last one
   std::vector<Event> batch_;
   std::size_t next_ = 0;
+  std::vector<Event> kernel_;  // by time
+  std::size_t next_kernel_ = 0;
 };
 
 }  // namespace stipple

@@ -62,8 +62,8 @@ uint64_t* stipple_reserve(size_t bytes);
 /// Id of a name and its unit for Counter, Mark and SystemCall; 0 when nothing is recorded.
 uint32_t stipple_define_name(const char* name, const char* unit);
 
-/// Takes a chunk of `kind` (ChunkKind) of `bytes` (a multiple of 16384) for the caller to fill behind
-/// its header: mapped, zero, its header written. Null: recording has stopped.
+/// Takes a chunk of `kind` (ChunkKind) of `bytes` (a multiple of 16384) for the caller to fill
+/// behind its header: mapped, zero, its header written. Null: recording has stopped.
 char* stipple_take_chunk(uint32_t kind, uint32_t thread, uint32_t tid, uint64_t sequence,
                          uint64_t lost, size_t bytes);
 

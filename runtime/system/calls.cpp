@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Wrappers of libc's functions: calls.def expanded. A wrapper that records reads the clock twice and
-// appends one record; what the program sees (result, errno, cancellation, EINTR, jumps out of
+// Wrappers of libc's functions: calls.def expanded. A wrapper that records reads the clock twice
+// and appends one record; what the program sees (result, errno, cancellation, EINTR, jumps out of
 // signal handlers) is the real function's. Not recorded: what the runtime does itself, which is
 // system calls without libc, and processes and threads that do not record.
 #include <dlfcn.h>
@@ -18,14 +18,15 @@ namespace {
 
 enum class CallIndex : std::uint32_t {
 #define STIPPLE_CALL(result, returns, symbol, number, parameters, arguments) k##symbol,
+#define STIPPLE_PASS(returns, symbol, parameters, arguments) k##symbol,
 #include "runtime/system/calls.def"
 #undef STIPPLE_CALL
+#undef STIPPLE_PASS
   kCount
 };
 
 struct Call {
   const char* symbol;
-  const char* kernel_name;  // "SYS_read"
   std::uint32_t number;
   std::uint32_t kind;               // 0 to be found out, 1 named like the system call, 2 otherwise
   std::atomic<std::uint32_t> name;  // DefineName; 0: not yet, or not needed
@@ -33,9 +34,11 @@ struct Call {
 };
 constinit Call calls[] = {
 #define STIPPLE_CALL(result, returns, symbol, number, parameters, arguments) \
-  {#symbol, #number, number, 0, {0}, {nullptr}},
+  {#symbol, number, 0, {0}, {nullptr}},
+#define STIPPLE_PASS(returns, symbol, parameters, arguments) {#symbol, 0, 1, {0}, {nullptr}},
 #include "runtime/system/calls.def"
 #undef STIPPLE_CALL
+#undef STIPPLE_PASS
 };
 
 /// libc has two of these; the plain look-up may find the one of before 2002.
@@ -65,9 +68,15 @@ bool IsSame(const char* a, const char* b) {
 /// Variants of one function are shown as the system call (open64, __read_chk); functions that only
 /// rest on it by their own name.
 bool IsNamedLikeKernel(const Call& call) {
-  static constexpr const char* kOwnNames[] = {"usleep",       "sleep",    "send",
-                                              "recv",         "wait",     "waitpid",
-                                              "pthread_join", "sem_wait", "pthread_cond_wait",
+  static constexpr const char* kOwnNames[] = {"usleep",
+                                              "sleep",
+                                              "send",
+                                              "recv",
+                                              "wait",
+                                              "waitpid",
+                                              "pthread_join",
+                                              "sem_wait",
+                                              "pthread_cond_wait",
                                               "pthread_cond_timedwait"};
   for (const char* name : kOwnNames)
     if (IsSame(call.symbol, name)) return false;
@@ -146,29 +155,11 @@ void Record(CallIndex index, const Visit& visit, std::int64_t result, Arguments.
 
 }  // namespace
 
-// By its symbol's name, not by libc's declaration of it: those have other types, or attributes that
-// say that a call never comes back by a cancellation.
-#define STIPPLE_CALL(result, returns, symbol, number, parameters, arguments)                \
-  extern "C" __attribute__((visibility("default"))) returns stipple_call_##symbol parameters \
-      __asm__(#symbol);                                                                     \
-  returns stipple_call_##symbol parameters {                                                \
-    using Function = returns parameters;                                                    \
-    auto* const real =                                                                      \
-        reinterpret_cast<Function*>(Real(calls[static_cast<int>(CallIndex::k##symbol)]));   \
-    const Visit visit;                                                                      \
-    returns const value = real arguments;                                                   \
-    if (visit.Records())                                                                    \
-      Record(CallIndex::k##symbol, visit, result##_Result(value) STIPPLE_UNPACK arguments); \
-    visit.Leave();                                                                          \
-    return value;                                                                           \
-  }
-#include "runtime/system/calls.def"
-#undef STIPPLE_CALL
-
 namespace {
 
 // A new thread has its ring from the begin, events or not. What it runs stands in one of a few
-// places until it has taken it from there; without a free one the thread begins with its first event.
+// places until it has taken it from there; without a free one the thread begins with its first
+// event.
 struct Start {
   std::atomic<std::uint32_t> taken;
   void* (*function)(void*);
@@ -198,18 +189,49 @@ Start* TakeStart(void* (*function)(void*), void* argument) {
 
 }  // namespace
 
+// By its symbol's name, not by libc's declaration of it: those have other types, or attributes that
+// say that a call never comes back by a cancellation.
+#define STIPPLE_CALL(result, returns, symbol, number, parameters, arguments)                \
+  extern "C" __attribute__((visibility("default")))                                         \
+  returns stipple_call_##symbol parameters __asm__(#symbol);                                \
+  returns stipple_call_##symbol parameters {                                                \
+    using Function = returns parameters;                                                    \
+    auto* const real =                                                                      \
+        reinterpret_cast<Function*>(Real(calls[static_cast<int>(CallIndex::k##symbol)]));   \
+    const Visit visit;                                                                      \
+    returns const value = real arguments;                                                   \
+    if (visit.Records())                                                                    \
+      Record(CallIndex::k##symbol, visit, result##_Result(value) STIPPLE_UNPACK arguments); \
+    visit.Leave();                                                                          \
+    return value;                                                                           \
+  }
+#define STIPPLE_PASS(returns, symbol, parameters, arguments)                              \
+  extern "C" __attribute__((visibility("default")))                                       \
+  returns stipple_call_##symbol parameters __asm__(#symbol);                              \
+  returns stipple_call_##symbol parameters {                                              \
+    using Function = returns parameters;                                                  \
+    auto* const real =                                                                    \
+        reinterpret_cast<Function*>(Real(calls[static_cast<int>(CallIndex::k##symbol)])); \
+    const Visit visit;                                                                    \
+    returns const value = real arguments;                                                 \
+    visit.Leave();                                                                        \
+    return value;                                                                         \
+  }
+#include "runtime/system/calls.def"
+#undef STIPPLE_CALL
+#undef STIPPLE_PASS
+
+// With the same promise as a STIPPLE_PASS row.
 extern "C" __attribute__((visibility("default"))) int stipple_call_pthread_create(
-    void* thread, const void* attributes, void* (*function)(void*), void* argument)
-    __asm__("pthread_create");
+    void* thread, const void* attributes, void* (*function)(void*),
+    void* argument) __asm__("pthread_create");
 int stipple_call_pthread_create(void* thread, const void* attributes, void* (*function)(void*),
                                 void* argument) {
   using Function = int(void*, const void*, void* (*)(void*), void*);
-  static constinit std::atomic<Function*> real{nullptr};
-  Function* create = real.load(std::memory_order_relaxed);
-  if (create == nullptr) {
-    create = reinterpret_cast<Function*>(dlsym(RTLD_NEXT, "pthread_create"));
-    real.store(create, std::memory_order_relaxed);
-  }
+  static constinit std::atomic<void*> real{nullptr};
+  if (real.load(std::memory_order_relaxed) == nullptr)
+    real.store(dlsym(RTLD_NEXT, "pthread_create"), std::memory_order_relaxed);
+  auto* const create = reinterpret_cast<Function*>(real.load(std::memory_order_relaxed));
   const Visit visit;
   Start* start = TakeStart(function, argument);
   const int result = start == nullptr ? create(thread, attributes, function, argument)

@@ -6,13 +6,15 @@
 // what is left are calls made without libc, or inside it.
 //
 // What cannot be repeated from a handler:
-//   - a call whose child would run on this stack, or go on behind this very instruction (clone, fork,
-//     vfork): the program makes it itself, with the selector at ALLOW until the next wrapper's end;
+//   - a call whose child shares memory and would run on this stack, or go on behind this very
+//     instruction on another (vfork, clone): the program makes it itself, with the selector at
+//     ALLOW until the next wrapper's end, which for pthread_create, posix_spawn, system and popen
+//     is their own;
 //   - the end of a signal handler of the program: done from where its frame lies;
 //   - masks and alternate stacks: what the handler's own frame brings back is changed as well.
 // The kernel kills a process that has SIGSYS blocked when it is raised, so no mask of the program
-// ever holds it. A program that wants SIGSYS for itself gets it, and its further calls are not seen.
-// A child begins without it, and arms itself when it records.
+// ever holds it. A program that wants SIGSYS for itself gets it, and its further calls are not
+// seen. A child begins without it, and arms itself when it records.
 #include "runtime/system/dispatch.h"
 
 #include <errno.h>
@@ -97,8 +99,11 @@ long Repeat(long number, const long (&arguments)[kParameters], ucontext_t& conte
   return result;
 }
 
-bool BeginsChild(long number) {
-  return number == SYS_clone || number == SYS_clone3 || number == SYS_fork || number == SYS_vfork;
+/// Begins a child in this memory.
+bool SharesMemory(long number, long flags) {
+  constexpr long kCloneVm = 0x100;
+  if (number == SYS_clone) return (flags & kCloneVm) != 0;
+  return number == SYS_clone3 || number == SYS_vfork;
 }
 
 void OnCall(int, siginfo_t* info, void* pointer) {
@@ -116,7 +121,7 @@ void OnCall(int, siginfo_t* info, void* pointer) {
     thread->selector = kBlock;
     stipple_pass_return_from(reinterpret_cast<void*>(registers[REG_RSP]));
   }
-  if (BeginsChild(number)) {
+  if (SharesMemory(number, registers[REG_RDI])) {
     constexpr greg_t kInstructionBytes = 2;
     registers[REG_RIP] -= kInstructionBytes;
     registers[REG_RAX] = number;

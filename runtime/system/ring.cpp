@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::size_t kPageBytes = 4096;
 constexpr std::size_t kDataPages = 16;
-constexpr std::uint64_t kShortNs = 10'000;      // away, and back, in a run
+constexpr std::uint64_t kShortNs = 10'000;  // away, and back, in a run
 constexpr std::uint64_t kLongestRunNs = 1'000'000;
 
 perf_event_attr Attributes() {
@@ -132,8 +132,10 @@ void ReadRing(KernelThread& thread) {
   };
   while (thread.tail < head) {
     const std::uint64_t header = word(thread.tail);
-    RingRecord record{static_cast<std::uint32_t>(header), static_cast<std::uint16_t>(header >> 32),
-                      static_cast<std::uint16_t>(header >> 48), {}};
+    RingRecord record{static_cast<std::uint32_t>(header),
+                      static_cast<std::uint16_t>(header >> 32),
+                      static_cast<std::uint16_t>(header >> 48),
+                      {}};
     if (record.bytes < 8) break;  // never, but this loop must end
     for (std::uint64_t w = 0; w < 3; ++w) record.words[w] = word(thread.tail + 8 + 8 * w);
     Take(thread, record);

@@ -13,8 +13,8 @@ int OpenRing(KernelThread& thread);
 /// Whether it is time to read the ring. Any thread, any time.
 inline bool IsRingHalfFull(const KernelThread& thread) {
   const perf_event_mmap_page* ring = thread.ring;
-  return ring != nullptr && __atomic_load_n(&ring->data_head, __ATOMIC_RELAXED) - thread.tail >
-                                thread.ring_bytes / 2;
+  return ring != nullptr &&
+         __atomic_load_n(&ring->data_head, __ATOMIC_RELAXED) - thread.tail > thread.ring_bytes / 2;
 }
 
 /// Makes records of what is in the ring. The caller drains.

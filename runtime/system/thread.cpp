@@ -37,9 +37,8 @@ __thread KernelThread* this_thread = nullptr;
 char* Room(KernelThread& thread, std::size_t bytes) {
   if (thread.next == nullptr || thread.next + bytes > thread.end) {
     const std::size_t chunk_bytes = thread.sequence < 2 ? kGranuleBytes : kLargestChunkBytes;
-    char* chunk =
-        stipple_take_chunk(static_cast<std::uint32_t>(ChunkKind::kKernel), thread.index, thread.tid,
-                           thread.sequence, thread.lost, chunk_bytes);
+    char* chunk = stipple_take_chunk(static_cast<std::uint32_t>(ChunkKind::kKernel), thread.index,
+                                     thread.tid, thread.sequence, thread.lost, chunk_bytes);
     if (chunk == nullptr) return nullptr;
     ++thread.sequence;
     thread.next = chunk + sizeof(ChunkHeader);

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+#include "analysis/stats/switches.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <string_view>
+
+#include "analysis/stats/number.h"
+#include "analysis/trace/kernel.h"
+
+namespace stipple {
+namespace {
+
+/// Of one thread, or of all together.
+struct Switches {
+  std::uint64_t blocked = 0;
+  std::uint64_t preempted = 0;
+  std::uint64_t migrations = 0;
+  std::int64_t blocked_ns = 0;
+  std::int64_t preempted_ns = 0;
+  std::int64_t longest_ns = 0;
+};
+
+Switches SwitchesOf(const KernelAccount& account, const Selection& selection) {
+  Switches s;
+  for (const Absence& a : account.absences) {
+    const std::int64_t inside = selection.Clamp(a.in_ns) - selection.Clamp(a.out_ns);
+    const std::int64_t away_ns = std::min(inside, a.away_ns);
+    (a.blocked ? s.blocked_ns : s.preempted_ns) += away_ns;
+    if (!selection.HasTime(a.out_ns)) continue;
+    (a.blocked ? s.blocked : s.preempted) += a.count;
+    s.migrations += a.migrated ? 1 : 0;
+    s.longest_ns = std::max(s.longest_ns, a.count == 1 ? away_ns : 0);
+  }
+  return s;
+}
+
+/// How much a count grew in the span; none: it was not noted.
+std::optional<std::int64_t> GrowthOf(const Trace& trace, const KernelAccount& account,
+                                     const Selection& selection, std::string_view name) {
+  std::optional<double> first;
+  double last = 0;
+  for (const KernelCount& c : account.counts) {
+    if (trace.names()[c.name].text != name) continue;
+    if (!first || c.time_ns <= selection.begin_ns) first = c.value;
+    if (c.time_ns <= selection.end_ns) last = std::max(last, c.value);
+  }
+  if (!first) return std::nullopt;
+  return static_cast<std::int64_t>(std::clamp(last - *first, 0.0, 9e15));
+}
+
+Cell CellOf(std::optional<std::int64_t> count) { return count ? Cell(*count) : Cell(); }
+double Seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
+
+std::vector<Cell> RowFor(const Trace& trace, const Location& l, const Selection& selection,
+                         Switches& all) {
+  const KernelAccount account = ReadKernel(trace, l);
+  const auto growth = [&](std::string_view name) {
+    return GrowthOf(trace, account, selection, name);
+  };
+  std::vector<Cell> row =
+      RowOf(std::int64_t{l.rank}, std::int64_t{l.process}, std::int64_t{l.thread});
+  const auto add = [&row](Cell cell) { row.push_back(std::move(cell)); };
+  if (HasRecorded(trace, l, "switches")) {
+    const Switches s = SwitchesOf(account, selection);
+    add(static_cast<std::int64_t>(s.blocked + s.preempted));
+    add(static_cast<std::int64_t>(s.blocked));
+    add(Seconds(s.blocked_ns));
+    add(static_cast<std::int64_t>(s.preempted));
+    add(Seconds(s.preempted_ns));
+    add(static_cast<std::int64_t>(s.migrations));
+    add(Seconds(s.longest_ns));
+    all.blocked += s.blocked;
+    all.preempted += s.preempted;
+    all.migrations += s.migrations;
+    all.blocked_ns += s.blocked_ns;
+    all.preempted_ns += s.preempted_ns;
+  } else {
+    const std::optional<std::int64_t> blocked = growth("voluntary switches");
+    const std::optional<std::int64_t> preempted = growth("involuntary switches");
+    add(blocked && preempted ? Cell(*blocked + *preempted) : Cell());
+    add(CellOf(blocked));
+    add({});
+    add(CellOf(preempted));
+    for (int i = 0; i < 3; ++i) add({});
+    all.blocked += static_cast<std::uint64_t>(blocked.value_or(0));
+    all.preempted += static_cast<std::uint64_t>(preempted.value_or(0));
+  }
+  add(CellOf(growth("page faults")));
+  add(CellOf(growth("major page faults")));
+  return row;
+}
+
+}  // namespace
+
+Table SwitchesTable(const Trace& trace, const Selection& selection, std::string& headline) {
+  Table table{"switches",
+              TableShape::kRows,
+              {{"rank"},
+               {"process"},
+               {"thread"},
+               {"switches"},
+               {"blocked"},
+               {"blocked_s"},
+               {"preempted"},
+               {"preempted_s"},
+               {"migrations"},
+               {"longest_s"},
+               {"page_faults"},
+               {"major_page_faults"}},
+              {}};
+  Switches all;
+  bool has_times = true;
+  for (const Location& l : trace.locations()) {
+    if (!selection.HasRank(l.rank) || l.stream->kernel.empty()) continue;
+    table.rows.push_back(RowFor(trace, l, selection, all));
+    has_times = has_times && HasRecorded(trace, l, "switches");
+  }
+  headline = "Context switches were not recorded (stipple run --switches).";
+  if (table.rows.empty()) return table;
+  headline = fmt::format("{} left the processor {}: {} to wait, {} because another was given it",
+                         FormatCount(table.rows.size(), "thread"),
+                         FormatCount(all.blocked + all.preempted, "time"),
+                         FormatCount(static_cast<std::int64_t>(all.blocked)),
+                         FormatCount(static_cast<std::int64_t>(all.preempted)));
+  if (has_times)
+    headline += fmt::format("; they waited {} and were kept waiting {}",
+                            FormatSeconds(Seconds(all.blocked_ns)),
+                            FormatSeconds(Seconds(all.preempted_ns)));
+  headline += ".";
+  return table;
+}
+
+}  // namespace stipple
