@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "analysis/stats/number.h"
+#include "analysis/trace/native_stack.h"
 
 namespace stipple {
 namespace {
@@ -95,7 +96,7 @@ FilterTotals FilterOf(const Trace& trace) {
 }
 
 std::vector<std::string> LeftOutTexts(const Trace& trace) {
-  std::vector<std::string> texts;
+  std::vector<std::string> texts = CrashTexts(trace);
   if (const Paused paused = LongestPaused(trace); paused.times != 0)
     texts.push_back(fmt::format(
         "recording was switched off {}, {} in all: nothing of that time is shown, and functions "

@@ -33,8 +33,16 @@ struct RunOptions {
   std::string clock = "exact";
   std::string filter;  // empty: none
   bool paused = false;
+  unsigned sample_hz = 0;  // 0: no samples
   std::vector<std::string> command;
 };
+
+void CheckSample(const RunOptions& options, bool asked) {
+  constexpr unsigned kMostHz = 10'000;
+  if (asked && (options.sample_hz == 0 || options.sample_hz > kMostHz))
+    throw InputError("--sample",
+                     fmt::format("{} is not a rate from 1 to {}", options.sample_hz, kMostHz));
+}
 
 std::optional<RunOptions> ParseRun(const Arguments& arguments) {
   RunOptions options;
@@ -51,10 +59,15 @@ std::optional<RunOptions> ParseRun(const Arguments& arguments) {
       ->type_name("FILE");
   app.add_flag("--paused", options.paused,
                "begin switched off; stipple_start() or SIGUSR2 switches on");
+  app.add_option("--sample", options.sample_hz,
+                 "native stacks: HZ times per second of each thread's processor time, and at each "
+                 "message and mark; also of programs without the plugin")
+      ->type_name("HZ");
   const auto dashes = std::ranges::find(arguments, "--");
   if (!Parse(app, {arguments.begin(), dashes})) return std::nullopt;
   if (dashes == arguments.end() || dashes + 1 == arguments.end())
     throw InputError("stipple run", "no command: stipple run -o A -- COMMAND");
+  CheckSample(options, app.count("--sample") != 0);
   options.command = {dashes + 1, arguments.end()};
   return options;
 }
@@ -143,7 +156,8 @@ std::vector<std::string> Prepare(const RunOptions& options, const std::string& p
   const std::string all = own == nullptr || *own == '\0' ? preload : preload + ":" + own;
   // Asked before the runtime is preloaded: the launcher's version is not to be recorded.
   const char* list = std::getenv("OMPI_MCA_mca_base_env_list");
-  std::vector<std::string> variables = {"LD_PRELOAD", "STIPPLE_ARCHIVE", "STIPPLE_CLOCK", "ASAN_OPTIONS"};
+  std::vector<std::string> variables = {"LD_PRELOAD", "STIPPLE_ARCHIVE", "STIPPLE_CLOCK",
+                                        "ASAN_OPTIONS"};
   const auto set_or_unset = [&variables](const char* name, const std::string& value) {
     if (value.empty()) {
       unsetenv(name);
@@ -153,6 +167,7 @@ std::vector<std::string> Prepare(const RunOptions& options, const std::string& p
     }
   };
   set_or_unset("STIPPLE_FILTER", options.filter.empty() ? "" : fs::absolute(options.filter));
+  set_or_unset("STIPPLE_SAMPLE", options.sample_hz == 0 ? "" : std::to_string(options.sample_hz));
   set_or_unset("STIPPLE_PAUSED", options.paused ? "1" : "");
   std::vector<std::string> command = options.command;
   if (list == nullptr) command = WithExports(command, variables, preload, IsOpenMpi);
