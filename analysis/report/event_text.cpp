@@ -9,6 +9,9 @@
 #include "analysis/stats/number.h"
 #include "analysis/trace/kernel.h"
 
+#include "analysis/trace/demangle.h"
+#include "analysis/trace/native_stack.h"
+
 namespace stipple {
 namespace {
 
@@ -130,6 +133,24 @@ std::string SwitchText(const ContextSwitch& r) {
                                        : fmt::format(", processor {} to {}", r.out_cpu, r.in_cpu));
 }
 
+/// "main > work > leaf", the runtime's and the C library's beginnings included.
+std::string NativePathText(const Trace& trace, const Process& p, const EventWord* record) {
+  std::string text;
+  for (const std::string& name : PathOf(trace, p, FramesOf(record)))
+    text += (text.empty() ? "" : " > ") + ShortName(name);
+  return text;
+}
+
+std::string CrashText(const Trace& trace, const Process& p, const EventWord* record) {
+  const auto r = RecordAt<Crash>(record);
+  std::string text =
+      r.signal == 0 ? "stack at a crash of another thread" : "crash by " + SignalName(r.signal);
+  if (r.signal != 0 && r.code > 0) text += fmt::format(" at {:#x}", r.address);
+  for (const std::string& line : StackLines(trace, p, FramesOf(record)))
+    text += "\n" + std::string(24, ' ') + "in " + line;
+  return text;
+}
+
 /// Records that depend on timing.
 std::string TimingText(const Trace& trace, const Process& p, const EventWord* record) {
   switch (KindOf(*record)) {
@@ -147,6 +168,14 @@ std::string TimingText(const Trace& trace, const Process& p, const EventWord* re
     }
     case RecordKind::kRegionMode:
       return ModeText(trace, p, RecordAt<RegionMode>(record));
+    case RecordKind::kSample:
+      return fmt::format("sample of {:.3f} ms: {}",
+                         static_cast<double>(RecordAt<Sample>(record).cpu_ns) * 1e-6,
+                         NativePathText(trace, p, record));
+    case RecordKind::kCallPath:
+      return "native path: " + NativePathText(trace, p, record);
+    case RecordKind::kCrash:
+      return CrashText(trace, p, record);
     case RecordKind::kTimeStamp:
       return "time stamp";
     case RecordKind::kSystemCall:

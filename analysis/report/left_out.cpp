@@ -8,6 +8,7 @@
 
 #include "analysis/report/recorded.h"
 #include "analysis/stats/number.h"
+#include "analysis/trace/native_stack.h"
 
 namespace stipple {
 namespace {
@@ -96,7 +97,7 @@ FilterTotals FilterOf(const Trace& trace) {
 }
 
 std::vector<std::string> LeftOutTexts(const Trace& trace) {
-  std::vector<std::string> texts;
+  std::vector<std::string> texts = CrashTexts(trace);
   if (trace.kept())
     texts.push_back(fmt::format(
         "keeps only the last {}: from {} after the run's begin on, which is time 0 here; {} before "

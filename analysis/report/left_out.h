@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What a run left out: the begin of a ring, time while it was switched off, functions that were
-// filtered, and those for which no id was left.
+// What a reader of any output should know first: crashes; and what the run left out: the begin of a
+// ring, time while it was switched off, functions that were filtered, and those for which no id was
+// left.
 #ifndef STIPPLE_ANALYSIS_REPORT_LEFT_OUT_H
 #define STIPPLE_ANALYSIS_REPORT_LEFT_OUT_H
 
@@ -33,7 +34,8 @@ struct FilterTotals {
 };
 FilterTotals FilterOf(const Trace& trace);
 
-/// Sentences about all of these, one each; none if nothing was left out and no filter was given.
+/// Sentences about all of these, one each; none if nothing crashed or was left out and no filter
+/// was given.
 std::vector<std::string> LeftOutTexts(const Trace& trace);
 
 }  // namespace stipple

@@ -331,8 +331,7 @@ std::string SamplesText(const CallPaths& paths) {
   const double worst =
       0.98 / std::sqrt(static_cast<double>(std::max<std::uint64_t>(paths.sample_count, 1)));
   return fmt::format(
-      "From {}, {} of processor time: shares are estimates, within {:.1f} % of it "
-      "in 19 of 20 runs.",
+      "From {}, {} of processor time: a share is an estimate, {:.1f} % more or less.",
       FormatCount(paths.sample_count, "sample"), FormatSeconds(paths.sampled_ns * 1e-9),
       worst * 100);
 }

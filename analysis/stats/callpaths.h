@@ -77,7 +77,8 @@ Table CallPathsTable(const CallPaths& paths);
 /// Rows as ProfileTable's, from samples: calls are not known.
 Table SampledProfileTable(const CallPaths& paths);
 
-/// "From 812 samples, 0.81 s of processor time: " and what such shares are worth.
+/// "From 812 samples, 0.81 s of processor time: a share is an estimate, 3.4 % more or less.": the
+/// widest 95 % interval of any share.
 std::string SamplesText(const CallPaths& paths);
 
 }  // namespace stipple

@@ -7,6 +7,7 @@
 #include "analysis/stats/number.h"
 #include "analysis/tools/command.h"
 #include "analysis/tools/progress.h"
+#include "analysis/trace/native_stack.h"
 
 namespace stipple {
 
@@ -26,6 +27,8 @@ int RunCheck(const Arguments& arguments) {
     text = fmt::format("{}: sound, {} of {}{}\n", archive, FormatCount(trace.EventCount(), "event"),
                        FormatCount(static_cast<std::uint64_t>(trace.RankCount()), "rank"),
                        RunningText(trace));
+  // A crash is the program's defect, not the archive's.
+  for (const std::string& crash : CrashTexts(trace)) text += crash + "\n";
   WriteOut(text);
   return health.Sound() ? 0 : 1;
 }

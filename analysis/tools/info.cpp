@@ -2,6 +2,8 @@
 // stipple info: what an archive holds.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "analysis/report/left_out.h"
@@ -11,6 +13,7 @@
 #include "analysis/stats/number.h"
 #include "analysis/tools/command.h"
 #include "analysis/tools/progress.h"
+#include "analysis/trace/native_stack.h"
 #include "analysis/trace/ranks.h"
 
 namespace stipple {
@@ -69,6 +72,53 @@ Json LostJson(const TraceHealth& health) {
   return health.LostUncounted() ? Json(nullptr) : Json(health.LostEvents());
 }
 
+/// Threads of crashed processes, those that were hit first.
+Json CrashesJson(const Trace& trace) {
+  Json crashes = Json::array();
+  for (const CrashedThread& t : CrashesOf(trace)) {
+    const bool hit = t.crash.signal != 0;
+    const bool has_address = hit && t.crash.code > 0;
+    crashes.push_back({{"rank", t.location->rank},
+                       {"process", t.location->process},
+                       {"thread", t.location->thread},
+                       {"signal", hit ? Json(SignalName(t.crash.signal)) : Json(nullptr)},
+                       {"address", has_address ? Json(t.crash.address) : Json(nullptr)},
+                       {"stack", StackLines(trace, trace.ProcessOf(*t.location), t.frames)}});
+  }
+  return crashes;
+}
+
+/// What was recorded, and what could not be and why.
+std::string RecordedText(const Trace& trace) {
+  std::vector<std::string> lines;
+  for (const Process& p : trace.processes())
+    for (const AvailabilityDefinition& a : p.stream->availability) {
+      const std::string line =
+          fmt::format("recorded   {}: {}\n", a.what,
+                      a.available    ? "yes"
+                      : a.error == 0 ? "no"
+                                     : fmt::format("no, {}", std::strerror(a.error)));
+      if (std::ranges::find(lines, line) == lines.end()) lines.push_back(line);
+    }
+  std::string text;
+  for (const std::string& line : lines) text += line;
+  return text;
+}
+
+/// Each crashed thread and its stack.
+std::string CrashesText(const Trace& trace) {
+  std::string text;
+  for (const CrashedThread& t : CrashesOf(trace)) {
+    const std::string thread =
+        fmt::format("{}.{}", trace.RankName(t.location->rank), t.location->thread);
+    text += fmt::format("\n{:<11}thread {}\n",
+                        t.crash.signal != 0 ? SignalName(t.crash.signal) : "meanwhile", thread);
+    for (const std::string& line : StackLines(trace, trace.ProcessOf(*t.location), t.frames))
+      text += fmt::format("           {}\n", line);
+  }
+  return text;
+}
+
 Json JobsJson(const Trace& trace) {
   Json jobs = Json::array();
   for (const Job& j : JobsOf(trace.processes()))
@@ -113,6 +163,7 @@ std::string InfoJson(const Analysis& info) {
                      {"not_recorded", NotRecordedJson(trace)},
                      {"jobs", JobsJson(trace)},
                      {"running", info.health.CountOf(Defect::kStillRunning)},
+                     {"crashes", CrashesJson(trace)},
                      {"problems", problems}};
   return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -163,6 +214,8 @@ std::string InfoText(const Analysis& info) {
     text += fmt::format("filter     {}: {} of {} left out\n", filter.path,
                         FormatCount(static_cast<std::int64_t>(filter.filtered)),
                         FormatCount(filter.functions, "function"));
+  text += RecordedText(trace);
+  text += CrashesText(trace);
   text += '\n';
   Table table{"locations",
               TableShape::kRows,

@@ -14,6 +14,7 @@
 #include "analysis/tools/command.h"
 #include "analysis/tools/progress.h"
 #include "analysis/trace/call_stack.h"
+#include "analysis/trace/demangle.h"
 
 namespace stipple {
 namespace {
@@ -101,6 +102,25 @@ std::string JumpText(const Trace& trace, const CallStack& stack, std::uint32_t c
   return text + fmt::format(" to {}, {} left", top, left);
 }
 
+/// Where a message or a mark belongs: " in main > solve > exchange"; empty for other events.
+std::string WhereText(const Trace& trace, const CallStack& stack, const EventWord* record) {
+  switch (KindOf(*record)) {
+    case RecordKind::kMark:
+    case RecordKind::kMpiSend:
+    case RecordKind::kMpiReceive:
+    case RecordKind::kMpiCollective:
+    case RecordKind::kThreadSend:
+    case RecordKind::kThreadReceive:
+      break;
+    default:
+      return {};
+  }
+  std::string text;
+  for (const std::uint32_t region : stack.frames())
+    text += (text.empty() ? "  in " : " > ") + ShortName(trace.regions()[region].name);
+  return text;
+}
+
 void PrintOne(const Trace& trace, const Selection& selection, Reader& r, Output& out) {
   const bool enter = r.event->record == nullptr && !r.event->leave;
   const std::uint32_t context = r.stack.context();
@@ -109,7 +129,7 @@ void PrintOne(const Trace& trace, const Selection& selection, Reader& r, Output&
   if (!selection.HasTime(r.time_ns)) return;
   std::string text = EventText(trace, r.cursor.location(), *r.event);
   if (r.event->record != nullptr)
-    text += JumpText(trace, r.stack, context, left);
+    text += JumpText(trace, r.stack, context, left) + WhereText(trace, r.stack, r.event->record);
   else if (left != 0)
     text += fmt::format("  ({} left unseen)", left);
   if (r.event->earliest != r.event->latest) {

@@ -34,11 +34,19 @@ struct RunOptions {
   std::string clock = "budget:5";
   std::string filter;  // empty: none
   bool paused = false;
+  unsigned sample_hz = 0;  // 0: no samples
   std::string max_bytes;  // empty: no limit
   bool switches = false;
   std::string syscalls = "none";
   std::vector<std::string> command;
 };
+
+void CheckSample(const RunOptions& options, bool asked) {
+  constexpr unsigned kMostHz = 10'000;
+  if (asked && (options.sample_hz == 0 || options.sample_hz > kMostHz))
+    throw InputError("--sample",
+                     fmt::format("{} is not a rate from 1 to {}", options.sample_hz, kMostHz));
+}
 
 std::optional<RunOptions> ParseRun(const Arguments& arguments) {
   RunOptions options;
@@ -65,10 +73,15 @@ std::optional<RunOptions> ParseRun(const Arguments& arguments) {
          "--syscalls", options.syscalls,
          "record system calls: none, io (calls of libc that can block or move data), or all")
       ->type_name("WHICH");
+  app.add_option("--sample", options.sample_hz,
+                 "native stacks: HZ times per second of each thread's processor time, and at each "
+                 "message and mark; also of programs without the plugin")
+      ->type_name("HZ");
   const auto dashes = std::ranges::find(arguments, "--");
   if (!Parse(app, {arguments.begin(), dashes})) return std::nullopt;
   if (dashes == arguments.end() || dashes + 1 == arguments.end())
     throw InputError("stipple run", "no command: stipple run -o A -- COMMAND");
+  CheckSample(options, app.count("--sample") != 0);
   options.command = {dashes + 1, arguments.end()};
   return options;
 }
@@ -207,6 +220,7 @@ std::vector<std::string> Prepare(const RunOptions& options, const std::string& p
     }
   };
   set_or_unset("STIPPLE_FILTER", options.filter.empty() ? "" : fs::absolute(options.filter));
+  set_or_unset("STIPPLE_SAMPLE", options.sample_hz == 0 ? "" : std::to_string(options.sample_hz));
   set_or_unset("STIPPLE_PAUSED", options.paused ? "1" : "");
   set_or_unset("STIPPLE_MAX_BYTES", options.max_bytes);
   set_or_unset("STIPPLE_SWITCHES", options.switches ? "1" : "");

@@ -170,15 +170,22 @@ std::vector<std::string> CrashTexts(const Trace& trace) {
 
 std::vector<std::string> StackLines(const Trace& trace, const Process& process,
                                     const NativeFrames& frames) {
-  std::vector<std::string> lines;
+  std::vector<std::pair<std::string, std::size_t>> places;
+  const auto add = [&places](std::string place) {
+    if (places.empty() || places.back().first != place) places.emplace_back(std::move(place), 0);
+    ++places.back().second;
+  };
   ForEachFrame(
       trace, process, frames,
-      [&lines](const std::vector<FrameName>& names, std::uint64_t word) {
-        for (const FrameName& n : names) lines.push_back(PlaceText(n, word));
+      [&add](const std::vector<FrameName>& names, std::uint64_t word) {
+        for (const FrameName& n : names) add(PlaceText(n, word));
       },
-      [&lines](std::uint32_t cut) {
-        lines.push_back(cut == kUnknownCut ? "(more)" : fmt::format("({} frames left out)", cut));
+      [&add](std::uint32_t cut) {
+        add(cut == kUnknownCut ? "(more)" : fmt::format("({} frames left out)", cut));
       });
+  std::vector<std::string> lines;
+  for (const auto& [place, times] : places)
+    lines.push_back(times == 1 ? place : fmt::format("{}, {} times", place, times));
   return lines;
 }
 

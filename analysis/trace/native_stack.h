@@ -47,7 +47,7 @@ std::string SignalName(int signal);
 /// hit and for each process that a signal ended without one.
 std::vector<std::string> CrashTexts(const Trace& trace);
 
-/// "in f (f.cpp:3)", "in g (libg.so+0x12)", one line for each function, innermost first.
+/// "f (f.cpp:3)", "g (libg.so+0x12), 3 times", a line for each function, innermost first.
 std::vector<std::string> StackLines(const Trace& trace, const Process& process,
                                     const NativeFrames& frames);
 

@@ -44,7 +44,7 @@ const std::vector<PartRule> kRules = {
     {"raytracer", {kUser}, {"mpi.h", "png.h", "fmt/", "nlohmann/", "CLI/"}},
     {"raytracer/geometry", {"raytracer", kUser}, {"embree", "hwy/"}},
     {"raytracer/simulate", {"raytracer", kUser}, {"simgrid/", "smpi/", "mpi.h"}},
-    {"analysis/trace", {kFormat}, {"fmt/", "zstd.h", "elfutils/"}},
+    {"analysis/trace", {kFormat}, {"fmt/", "zstd.h", "elfutils/", "dwarf.h"}},
     {"analysis/stats", {kFormat, "analysis/trace"}, {"fmt/"}},
     {"analysis/views", {"analysis/stats", "analysis/trace"}, {"fmt/", "vtk"}},
     {"analysis/report",
