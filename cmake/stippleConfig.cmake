@@ -3,13 +3,22 @@
 #                                their compiler; a language that is enabled and has none is an error here
 #   stipple_instrument(target)   the same as a function
 #   stipple::static_runtime      for targets that are linked with -static: puts the runtime in
-#   stipple::headers             stipple/user.h, for marks and counters by hand
-# find_package(stipple COMPONENTS headers) gives the last alone, whatever the compilers.
+#   stipple::headers             stipple/user.h, for regions, marks and counters by hand
+#   stipple::fortran             the same as a Fortran module, if the project has Fortran
+# find_package(stipple COMPONENTS headers) gives the last two alone, whatever the compilers.
 get_filename_component(stipple_prefix "${CMAKE_CURRENT_LIST_DIR}/../../.." ABSOLUTE)
 
 if(NOT TARGET stipple::headers)
   add_library(stipple::headers INTERFACE IMPORTED)
   target_include_directories(stipple::headers INTERFACE ${stipple_prefix}/include)
+endif()
+if(CMAKE_Fortran_COMPILER_LOADED AND NOT TARGET stipple::fortran)
+  # Compiled here, once for the project: module files fit one compiler only.
+  add_library(stipple_fortran STATIC EXCLUDE_FROM_ALL ${stipple_prefix}/include/stipple/stipple.f90)
+  set_target_properties(stipple_fortran PROPERTIES POSITION_INDEPENDENT_CODE ON
+    Fortran_MODULE_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/stipple_fortran)
+  target_include_directories(stipple_fortran INTERFACE ${CMAKE_CURRENT_BINARY_DIR}/stipple_fortran)
+  add_library(stipple::fortran ALIAS stipple_fortran)
 endif()
 if("${stipple_FIND_COMPONENTS}" STREQUAL "headers" OR TARGET stipple::instrument)
   return()

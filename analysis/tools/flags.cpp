@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "analysis/tools/command.h"
-#include "analysis/tools/left_out.h"
+#include "analysis/tools/selection_account.h"
 #include "analysis/tools/process.h"
 #include "analysis/trace/input_error.h"
 #include "analysis/trace/stream.h"

@@ -28,6 +28,11 @@ bool IsInNamespaceStd(std::string_view linkage_name) {
                                       "_ZNSo", "_ZNSi", "_ZNSd", "_ZNKSa", "_ZN9__gnu_cxx"});
 }
 
+// Fortran has no attribute with which the module stipple (stipple.f90) could say it itself.
+bool IsManualEvent(std::string_view linkage_name) {
+  return linkage_name.starts_with("__stipple_MOD_");
+}
+
 struct ReasonSpec {
   bool instruments;
   std::string_view text;
@@ -138,7 +143,8 @@ Reason Selection::ReasonOf(const FunctionFacts& facts) {
   const bool file_excluded = OccursIn(options_.exclude_files, facts.file, {});
   const FilterAnswer filtered = Filtered(facts);
 
-  if (facts.wish == Wish::kNever) return Reason::kAttributeNever;
+  if (facts.wish == Wish::kNever || IsManualEvent(facts.linkage_name))
+    return Reason::kAttributeNever;
   if (facts.artificial || IsCompilersOwn(facts.linkage_name)) return Reason::kArtificial;
   if (excluded) return Reason::kExcludedFunction;
   if (facts.wish == Wish::kAlways) return Reason::kAttributeAlways;

@@ -11,7 +11,7 @@ prefix=$work/prefix
 fail() { echo "FAILED: $*" >&2; exit 1; }
 
 "$cmake" --install "$build" --prefix "$prefix" >"$work/log" || { cat "$work/log"; fail "install"; }
-for file in bin/stipple bin/raytracer include/stipple/abi.h include/stipple/format.h include/stipple/user.h \
+for file in bin/stipple bin/raytracer include/stipple/abi.h include/stipple/format.h include/stipple/user.h include/stipple/stipple.f90 \
   lib/stipple/libstipple.so lib/stipple/libstipple.a lib/stipple/libstipple-mpi.so lib/stipple/libstipple-views.so \
   lib/cmake/stipple/stippleConfig.cmake lib/pkgconfig/stipple.pc bin/stipple-cc bin/stipple-c++ bin/stipple-fc \
   bin/stipple-mpicc bin/stipple-mpicxx share/doc/stipple/plugin-options.md share/doc/stipple/stipple-run.md; do
@@ -86,11 +86,18 @@ target_link_libraries(lto PRIVATE stipple::instrument)
 set_target_properties(lto PROPERTIES INTERPROCEDURAL_OPTIMIZATION ${LTO})
 if(FORTRAN)
   add_executable(fortran main.f90)
-  target_link_libraries(fortran PRIVATE stipple::instrument)
+  target_link_libraries(fortran PRIVATE stipple::instrument stipple::fortran)
 endif()
 END
 echo 'extern "C" int Other(int x) { return x > 0 ? Other(x - 1) + 1 : 0; }' >project/other.cpp
-printf 'program main\n  print *, "x"\nend program\n' >project/main.f90
+cat >project/main.f90 <<'END'
+program main
+  use stipple
+  type(stipple_name), save :: half = stipple_name('half way')
+  call stipple_mark(half)
+  print *, "x"
+end program
+END
 configure() { # C_COMPILER CXX_COMPILER ARGUMENTS...
   local c=$1 cxx=$2
   shift 2
@@ -120,6 +127,11 @@ for plugin in "$prefix"/lib/stipple/*/stipple.so; do
   if [ "${folder%-*}" = gcc ] && command -v "gfortran-${folder#gcc-}" >/dev/null; then
     FC=gfortran-${folder#gcc-} build_project $folder $c $cxx -DLTO=ON -DFORTRAN=ON
     readelf -SW project/build/fortran | grep -q stipple_desc || fail "Fortran is not instrumented"
+    "$stipple" run --overwrite -o user.stipple -- project/build/fortran >out 2>err || { cat err; fail "Fortran"; }
+    "$stipple" print --canonical user.stipple | grep -qx 'mark half way' || fail "no mark in Fortran"
+    STIPPLE_FC=gfortran-${folder#gcc-} "$prefix/bin/stipple-fc" project/main.f90 -o by_wrapper || fail "stipple-fc"
+    "$stipple" run --overwrite -o user.stipple -- ./by_wrapper >out 2>err || { cat err; fail "by stipple-fc"; }
+    "$stipple" print --canonical user.stipple | grep -qx 'mark half way' || fail "no mark by stipple-fc"
   else
     build_project $folder $c $cxx -DLTO=$lto
   fi
@@ -147,6 +159,7 @@ if command -v pkg-config >/dev/null; then
   flags=$(pkg-config --variable="${folder/-/_}_flags" stipple)
   plugin=$(sed 's/ .*//; s/-fplugin=//' <<<"$flags")
   [ -f "$plugin" ] || fail "pkg-config names $plugin"
+  [ -f "$(pkg-config --variable=fortran_module stipple)" ] || fail "pkg-config --variable=fortran_module"
   [ -f "$(pkg-config --cflags stipple | sed 's/-I//; s/ *$//')/stipple/user.h" ] || fail "pkg-config --cflags"
   pkg-config --static --libs stipple | grep -q -- '-lstipple' || fail "pkg-config --static --libs"
   echo "pkg-config knows $folder"

@@ -37,6 +37,7 @@ build() { # FOLDER FLAGS...
   local folder=$1 i
   shift
   mkdir -p "$folder"
+  [[ ${compile[0]} == *fortran* ]] && set -- "$@" -J "$folder"  # module files
   "${compile[@]}" "$@" -o "$folder/app" || fail "does not compile"
   for i in "${!libraries[@]}"; do
     "${compile[@]:0:${#compile[@]}-1}" "${libraries[i]}" -shared -fPIC "$@" -o "$folder/library$i.so" ||

@@ -126,6 +126,14 @@ TEST(Select, WhatTheCompilerMadeAndWhatStandsInStdIsLeftOut) {
   }
 }
 
+TEST(Select, ManualEventsOfFortranAreNone) {
+  FunctionFacts facts = Work();
+  facts.linkage_name = "__stipple_MOD_stipple_mark";
+  EXPECT_EQ(ReasonFor(facts, {}), Reason::kAttributeNever);
+  facts.linkage_name = "__stipple2_MOD_mark";
+  EXPECT_EQ(ReasonFor(facts, {}), Reason::kDefault);
+}
+
 TEST(Select, SystemHeadersAreTakenWhenAskedFor) {
   Options options;
   options.system_headers = true;

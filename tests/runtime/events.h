@@ -79,6 +79,23 @@ __attribute__((always_inline)) inline void Leave(const stipple_dso& dso, std::ui
   if (token != 0) Event(dso, token | STIPPLE_LEAVE);
 }
 
+/// The functions of a traced program: one that calls the second, and one more.
+inline Object<3>* object = nullptr;
+
+inline void Visit(int region) {
+  const std::uint32_t token = Enter(object->dso, object->descriptors[region]);
+  Leave(object->dso, token);
+}
+
+/// Four events per round.
+inline void Work(long rounds) {
+  for (long i = 0; i < rounds; ++i) {
+    const std::uint32_t token = Enter(object->dso, object->descriptors[0]);
+    Visit(1);
+    Leave(object->dso, token);
+  }
+}
+
 }  // namespace stipple_test
 
 #endif

@@ -180,6 +180,14 @@ TEST(Stream, ManualEventsDefineTheirNamesAtFirstUse) {
   EXPECT_EQ(streams[1].threads.at(0).records.at(stipple::RecordKind::kMark), 1);
 }
 
+TEST(Stream, ManualEventsHaveTimesWhateverTheClock) {
+  const Directory archive;
+  EXPECT_EQ(RunWriter(archive.path(), "manual 1000", "export STIPPLE_CLOCK=sparse:64;").status, 0);
+  const auto events = WalkArchive(archive.path()).at(0).threads.at(0).Events();
+  EXPECT_EQ(events.size(), 2000u);
+  for (const EventWord word : events) EXPECT_NE(stipple::TimeOf(word), 0u);
+}
+
 TEST(Region, KeepsItsIdThroughUnloading) {
   const Directory archive;
   EXPECT_EQ(RunWriter(archive.path(), "reload 1000").status, 0);

@@ -24,24 +24,12 @@ namespace {
 
 using stipple_test::Enter;
 using stipple_test::Leave;
+using stipple_test::object;
 using stipple_test::Object;
+using stipple_test::Visit;
+using stipple_test::Work;
 
 constexpr const char* kNames[] = {"outer", "inner", "_ZN6solver4stepEi"};
-Object<3>* object = nullptr;
-
-void Visit(int region) {
-  const std::uint32_t token = Enter(object->dso, object->descriptors[region]);
-  Leave(object->dso, token);
-}
-
-/// Four events per round.
-void Work(long rounds) {
-  for (long i = 0; i < rounds; ++i) {
-    const std::uint32_t token = Enter(object->dso, object->descriptors[0]);
-    Visit(1);
-    Leave(object->dso, token);
-  }
-}
 
 /// What -finstrument-functions makes of two functions of which one calls the other: four events.
 __attribute__((noinline)) void Inner() {

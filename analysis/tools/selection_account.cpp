@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "analysis/tools/left_out.h"
+#include "analysis/tools/selection_account.h"
 
 #include <elf.h>
 #include <fmt/format.h>

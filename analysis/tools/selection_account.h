@@ -2,8 +2,8 @@
 // What the plugins wrote into object files about the functions they left out (docs/architecture.md,
 // "The account of the selection"), read back from objects, archives of objects, libraries and
 // programs.
-#ifndef STIPPLE_ANALYSIS_TOOLS_LEFT_OUT_H
-#define STIPPLE_ANALYSIS_TOOLS_LEFT_OUT_H
+#ifndef STIPPLE_ANALYSIS_TOOLS_SELECTION_ACCOUNT_H
+#define STIPPLE_ANALYSIS_TOOLS_SELECTION_ACCOUNT_H
 
 #include <cstddef>
 #include <map>
