@@ -4,7 +4,6 @@
 
 #include "runtime/core/file.h"
 #include "runtime/core/process.h"
-#include "runtime/core/region.h"
 #include "runtime/core/stream.h"
 
 namespace stipple {
@@ -25,14 +24,6 @@ bool stipple_observe(const struct stipple_observer* observer) {
 
 void stipple_begin_thread(void) {
   if (stipple_recording()) stipple::BeginThread();
-}
-
-uint32_t stipple_define_name(const char* name, const char* unit) {
-  const stipple::SignalBlock signals_blocked;
-  stipple::Process* process = stipple::BeginProcess();
-  if (process == nullptr) return 0;
-  stipple::Holding holding(process->lock);
-  return stipple::NameId(*process, name, unit);
 }
 
 char* stipple_take_chunk(uint32_t kind, uint32_t thread, uint32_t tid, uint64_t sequence,

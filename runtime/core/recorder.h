@@ -82,7 +82,6 @@ void stipple_record_end(struct stipple_region* region);
 void stipple_record_send(struct stipple_channel* channel, uint64_t key, uint64_t bytes);
 void stipple_record_receive(struct stipple_channel* channel, uint64_t key, uint64_t bytes,
                             uint64_t waiting_since);
-uint32_t stipple_define_name(const char* name, const char* unit);
 uint32_t stipple_define_channel(const char* name);
 void stipple_switch(int on);
 void stipple_switch_regions(const char* pattern, int on);
