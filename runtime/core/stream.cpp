@@ -326,7 +326,7 @@ std::uint32_t stipple_slow_event(std::uint32_t token) {
       return token;
     }
   }
-  CountLost(1);
+  CountLost(leave ? 1 : 2);  // the exit gets no token, so it says nothing
   return 0;
 }
 
