@@ -15,8 +15,8 @@ Analysis::Analysis(const Trace& of) : trace(of), profiles(of.locations().size())
   trace.ForEachLocation("reading", [&](const Location& l) {
     const Process& process = trace.ProcessOf(l);
     MpiCollector collector(trace, l);
-    ProfileVisitor visitor(process.RegionCount(), trace.kept() ? l.first_ticks : 0,
-                           kNoTickLimit, &collector);
+    ProfileVisitor visitor(process.RegionCount(), trace.kept() ? l.first_ticks : 0, kNoTickLimit,
+                           &collector);
     trace.Scan(l, visitor);
     visitor.Finish(l.last_ticks);
     profiles[l.index] = ProfileFrom(trace, l, visitor, true);

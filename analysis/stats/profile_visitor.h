@@ -110,9 +110,7 @@ class ProfileVisitor {
   /// By region of the process.
   std::span<const RegionTicks> regions() const { return {regions_.data(), regions_.size() - 1}; }
   /// None if the rest of a ring began with frames that are not known.
-  std::uint64_t leaves_without_enter() const {
-    return begin_is_known_ ? leaves_without_enter_ : 0;
-  }
+  std::uint64_t leaves_without_enter() const { return begin_is_known_ ? leaves_without_enter_ : 0; }
   /// Frames whose end was seen only by the leave of one further out.
   std::uint64_t enters_without_leave() const { return enters_without_leave_; }
 

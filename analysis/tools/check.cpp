@@ -2,6 +2,7 @@
 // stipple check: proves an archive sound.
 #include <fmt/format.h>
 
+#include "analysis/report/left_out.h"
 #include "analysis/stats/analysis.h"
 #include "analysis/stats/number.h"
 #include "analysis/tools/command.h"
@@ -24,6 +25,7 @@ int RunCheck(const Arguments& arguments) {
   if (health.Sound())
     text = fmt::format("{}: sound, {} of {}\n", archive, FormatCount(trace.EventCount(), "event"),
                        FormatCount(static_cast<std::uint64_t>(trace.RankCount()), "rank"));
+  if (trace.kept()) text += LeftOutTexts(trace).front() + "\n";
   WriteOut(text);
   return health.Sound() ? 0 : 1;
 }

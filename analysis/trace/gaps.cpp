@@ -18,7 +18,11 @@ std::optional<ClockStep> StepOf(const Chunk& chunk) {
   while (word != chunk.end && IsRecord(*word) && IsClosed(*word)) {
     const std::uint64_t words = SoundRecordWords(word, chunk.end);
     if (words == 0) break;
-    if (KindOf(*word) == RecordKind::kClockStep) return RecordAt<ClockStep>(word);
+    if (KindOf(*word) == RecordKind::kClockStep) {
+      const auto step = RecordAt<ClockStep>(word);
+      if (step.ticks < kMostTicks && step.before_ticks < kMostTicks) return step;
+      break;
+    }
     if (KindOf(*word) != RecordKind::kOpenFrames) break;
     word += words;
   }

@@ -10,8 +10,8 @@
 
 namespace stipple {
 
-/// Removes the chunks that a ring has dropped, whatever is left of them; returns the sequence of the
-/// thread's first chunk.
+/// Removes the chunks that a ring has dropped, whatever is left of them; returns the sequence of
+/// the thread's first chunk.
 std::uint64_t DropOverwritten(ThreadStream& thread, const Stream& stream);
 
 /// Puts the chunks behind a step of the clock where CLOCK_MONOTONIC_RAW has them. Ticks within them

@@ -61,8 +61,8 @@ void NumberCollectives(std::vector<CollectiveEvent>& collectives) {
 void NumberFromEnd(std::vector<CollectiveEvent>& collectives) {
   std::uint32_t number = std::numeric_limits<std::uint32_t>::max();
   for (std::size_t i = collectives.size(); i-- > 0;) {
-    const bool same =
-        i + 1 < collectives.size() && collectives[i].communicator == collectives[i + 1].communicator;
+    const bool same = i + 1 < collectives.size() &&
+                      collectives[i].communicator == collectives[i + 1].communicator;
     number = same ? number - 1 : std::numeric_limits<std::uint32_t>::max();
     collectives[i].number = number;
   }

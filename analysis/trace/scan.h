@@ -67,8 +67,8 @@ Record RecordAt(const EventWord* word) {
   return record;
 }
 
-/// Regions of the frames in an OpenFrames record that has been accepted, outermost first; those that
-/// are not below region_count as 0.
+/// Regions of the frames in an OpenFrames record that has been accepted, outermost first; those
+/// that are not below region_count as 0.
 std::vector<std::uint32_t> OpenRegions(const EventWord* record, std::uint32_t region_count);
 /// Whether that is all that was open.
 bool AllOpenKnown(const EventWord* record);

@@ -204,7 +204,11 @@ struct DefinitionReader {
 
   bool Ring(std::span<const EventWord> words) {
     Overwritten d;
-    if (!Get(words, d) || d.from_ticks >= kMostTicks) return false;
+    // Places that were passed over make more chunks than bytes; damage would hide whole threads.
+    constexpr std::uint64_t kPassedOver = 1 << 10;
+    if (!Get(words, d) || d.from_ticks >= kMostTicks ||
+        d.chunks > d.bytes / kGranuleBytes + kPassedOver)
+      return false;
     stream.overwritten.push_back(d);
     return true;
   }
@@ -351,9 +355,9 @@ FoundChunks FindChunks(Stream& stream) {
   return found;
 }
 
-/// Sequence numbers are `expected` and on: what is not there was lost. Of what is there twice the first
-/// counts: the second is the copy of a window whose process was killed before it lost its magic.
-/// Two different chunks of one number are damage.
+/// Sequence numbers are `expected` and on: what is not there was lost. Of what is there twice the
+/// first counts: the second is the copy of a window whose process was killed before it lost its
+/// magic. Two different chunks of one number are damage.
 void OrderChunks(std::vector<Chunk>& chunks, std::uint64_t expected, Stream& stream) {
   std::ranges::stable_sort(chunks, {}, &Chunk::sequence);
   std::vector<Chunk> once;
