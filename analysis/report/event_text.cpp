@@ -47,14 +47,6 @@ std::string ThreadMessageText(const Trace& trace, const Process& p, const char* 
                      trace.channels()[p.ChannelOf(r.channel)], r.key);
 }
 
-std::string ModeText(const Trace& trace, const Process& p, const RegionMode& r) {
-  const char* how = r.mode == RegionModeKind::kTimed     ? "with all times"
-                    : r.mode == RegionModeKind::kNoClock ? "without times"
-                                                         : "by counting visits";
-  return fmt::format("budget: {} is recorded {}, {} visits seen",
-                     RegionOfProcess(trace, p, r.region).name, how, r.visits);
-}
-
 /// Records that a canonical text shows.
 std::string StableText(const Trace& trace, const Process& p, const EventWord* record) {
   switch (KindOf(*record)) {
@@ -196,8 +188,6 @@ std::string TimingText(const Trace& trace, const Process& p, const EventWord* re
       const auto r = RecordAt<ClockStep>(record);
       return fmt::format("clock step, from {} to {} ticks", r.before_ticks, r.ticks);
     }
-    case RecordKind::kRegionMode:
-      return ModeText(trace, p, RecordAt<RegionMode>(record));
     default:
       return fmt::format("record of kind {}", static_cast<unsigned>(KindOf(*record)));
   }

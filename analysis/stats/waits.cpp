@@ -281,7 +281,8 @@ class CulpritVisitor {
   }
   void Record(const EventWord* record, std::uint64_t ticks) {
     Spend(ticks);
-    if (KindOf(*record) == RecordKind::kOpenFrames) stack_.Begin(record, OpenRegions(record, count_));
+    if (KindOf(*record) == RecordKind::kOpenFrames)
+      stack_.Begin(record, OpenRegions(record, count_));
     stack_.Record(record);
   }
   void Finish() { Spend(kNoTickLimit); }

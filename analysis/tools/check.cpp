@@ -2,6 +2,7 @@
 // stipple check: proves an archive sound.
 #include <fmt/format.h>
 
+#include "analysis/report/left_out.h"
 #include "analysis/report/text.h"
 #include "analysis/stats/analysis.h"
 #include "analysis/stats/number.h"
@@ -29,6 +30,7 @@ int RunCheck(const Arguments& arguments) {
                        RunningText(trace));
   // A crash is the program's defect, not the archive's.
   for (const std::string& crash : CrashTexts(trace)) text += crash + "\n";
+  if (trace.kept()) text += LeftOutTexts(trace).front() + "\n";
   WriteOut(text);
   return health.Sound() ? 0 : 1;
 }

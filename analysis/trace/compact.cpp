@@ -24,6 +24,7 @@
 #include <span>
 
 #include "analysis/trace/chunk_code.h"
+#include "analysis/trace/gaps.h"
 #include "analysis/trace/input_error.h"
 #include "analysis/trace/parallel.h"
 #include "analysis/trace/stream.h"
@@ -123,7 +124,7 @@ NewChunk MakeChunk(const Chunk& chunk) {
   const CodedChunk coded = coder.Code(words);
   again.resize(words.size());
   const bool smaller = coded.frame.size() + sizeof(CompactedChunk) < words.size_bytes();
-  if (coded.frame.empty() || !smaller ||
+  if (coded.frame.empty() || !smaller || BeginsWithStep(chunk) ||
       !decoder.Decode(std::as_bytes(std::span(coded.frame)), again) ||
       !std::ranges::equal(again, words))
     return {PlainBytes(chunk), coded.events};

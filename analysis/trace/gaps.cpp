@@ -12,13 +12,17 @@ namespace {
 // A damaged count must not pass for a loss.
 constexpr std::uint64_t kMostLost = std::uint64_t{1} << 48;
 
-/// The step with which a chunk begins.
+/// The step with which a chunk begins. Such a chunk is never compacted.
 std::optional<ClockStep> StepOf(const Chunk& chunk) {
   const EventWord* word = chunk.begin;
   while (word != chunk.end && IsRecord(*word) && IsClosed(*word)) {
     const std::uint64_t words = SoundRecordWords(word, chunk.end);
     if (words == 0) break;
-    if (KindOf(*word) == RecordKind::kClockStep) return RecordAt<ClockStep>(word);
+    if (KindOf(*word) == RecordKind::kClockStep) {
+      const auto step = RecordAt<ClockStep>(word);
+      if (step.ticks < kMostTicks && step.before_ticks < kMostTicks) return step;
+      break;
+    }
     if (KindOf(*word) != RecordKind::kOpenFrames) break;
     word += words;
   }
@@ -58,6 +62,8 @@ std::uint64_t UntoldFrom(const Stream& stream) {
 }
 
 }  // namespace
+
+bool BeginsWithStep(const Chunk& chunk) { return StepOf(chunk).has_value(); }
 
 std::uint64_t DropOverwritten(ThreadStream& thread, const Stream& stream) {
   std::uint64_t first = 0;

@@ -10,6 +10,9 @@
 
 namespace stipple {
 
+/// Whether the clock had been set when the chunk was begun.
+bool BeginsWithStep(const Chunk& chunk);
+
 /// Removes the chunks that a ring has dropped, whatever is left of them; returns the sequence of
 /// the thread's first chunk.
 std::uint64_t DropOverwritten(ThreadStream& thread, const Stream& stream);

@@ -219,7 +219,11 @@ struct DefinitionReader {
 
   bool Ring(std::span<const EventWord> words) {
     Overwritten d;
-    if (!Get(words, d) || d.from_ticks >= kMostTicks) return false;
+    // Places that were passed over make more chunks than bytes; damage would hide whole threads.
+    constexpr std::uint64_t kPassedOver = 1 << 10;
+    if (!Get(words, d) || d.from_ticks >= kMostTicks ||
+        d.chunks > d.bytes / kGranuleBytes + kPassedOver)
+      return false;
     stream.overwritten.push_back(d);
     return true;
   }

@@ -137,10 +137,11 @@ bool TakeFreshChunk(Process& process, Thread& thread, std::size_t bytes) {
 }
 
 /// Takes a chunk of whichever kind; false if recording has stopped, or the ring has none now.
-// NOLINTNEXTLINE(readability-function-size): who, how much, when.
-bool TakeAnyChunk(Process& process, Thread& thread, std::size_t bytes, std::uint64_t ticks) {
+// NOLINTNEXTLINE(readability-function-size): who, how much, when; what the ring gets back.
+bool TakeAnyChunk(Process& process, Thread& thread, std::size_t bytes, std::uint64_t ticks,
+                  std::uint32_t* closed) {
   if (HasRing(process.ring))
-    return FitsRing(process.ring, bytes) && TakeRingChunk(process, thread, ticks);
+    return FitsRing(process.ring, bytes) && TakeRingChunk(process, thread, ticks, closed);
   return thread.chunk != nullptr && CanReuse(thread, bytes)
              ? MoveWindowOn(process, thread)
              : TakeFreshChunk(process, thread, bytes);
@@ -166,7 +167,8 @@ std::uint64_t WriteClockStep(char* place, const ClockPair& before, const ClockPa
 bool NextChunk(Process& process, Thread& thread, std::size_t bytes, std::uint64_t ticks) {
   const bool has_before = thread.chunk != nullptr;
   const ClockPair before = has_before ? PairOf(thread.chunk) : ClockPair{};
-  if (!TakeAnyChunk(process, thread, bytes, ticks)) return false;
+  std::uint32_t closed = 0;
+  if (!TakeAnyChunk(process, thread, bytes, ticks, &closed)) return false;
   std::uint64_t used = sizeof(ChunkHeader);
   if (HasRing(process.ring)) used += WriteOpenFrames(thread, thread.chunk + used, ticks);
   ChunkHeader header{};
@@ -178,6 +180,7 @@ bool NextChunk(Process& process, Thread& thread, std::size_t bytes, std::uint64_
   header.ticks = ticks;
   header.lost = thread.lost;
   WriteChunkHeader(process, thread.chunk, header);
+  if (HasRing(process.ring)) GiveToRing(process, closed);
   const ClockPair begin{process.begin_ticks, process.begin_raw_ns};
   const ClockPair now = PairOf(thread.chunk);
   if (has_before && ClockStepped(begin, before, now))

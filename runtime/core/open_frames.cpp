@@ -105,38 +105,68 @@ void Follow(FrameStack& stack, const EventWord* record) {
   }
 }
 
+/// Events up to the first that is not plain: an enter with room for it, or a leave of the innermost
+/// frame. What each touches is in registers.
+// NOLINTNEXTLINE(readability-function-size): from where to where, since when; what was found.
+const EventWord* FoldEvents(FrameStack& stack, const EventWord* word, const EventWord* end,
+                            std::uint64_t ticks, FoldedChunk& folded) {
+  if (stack.unknown != 0) return word;
+  OpenFrame* const frames = stack.frames.items;
+  OpenFrame* top = frames + stack.frames.count;
+  OpenFrame* const limit = frames + stack.frames.room;
+  const EventWord* const begin = word;
+  for (; word < end; ++word) {
+    const auto region = static_cast<std::uint32_t>(*word & kRegionMask);
+    if (region - 1 >= kMaxRegion) break;
+    if (!IsLeave(*word)) {
+      if (top == limit) break;
+      *top++ = {FullTicks(*word, ticks), region, 0};
+    } else {
+      if (top == frames || top[-1].region != region) break;
+      --top;
+    }
+  }
+  stack.frames.count = static_cast<std::uint32_t>(top - frames);
+  folded.events += static_cast<std::uint64_t>(word - begin);
+  return word;
+}
+
+void FoldRareEvent(FrameStack& stack, EventWord word, std::uint64_t ticks) {
+  const auto region = static_cast<std::uint32_t>(word & kRegionMask);
+  if (IsLeave(word))
+    Leave(stack, region);
+  else
+    Enter(stack, region, FullTicks(word, ticks));
+}
+
 }  // namespace
 
 FoldedChunk FoldChunk(FrameStack& stack, const EventWord* word, const EventWord* end,
                       std::uint64_t ticks) {
   FoldedChunk folded{0, true};
   while (word < end) {
-    const auto region = static_cast<std::uint32_t>(*word & kRegionMask);
-    if (region == 0) {
+    word = FoldEvents(stack, word, end, ticks, folded);
+    if (word == end) break;
+    if ((*word & kRegionMask) == 0) {
       folded.complete = false;
       ++word;
-    } else if (region < kKindBase) {
-      ++folded.events;
-      const std::uint32_t depth = stack.frames.count;
-      if (!IsLeave(*word))
-        Enter(stack, region, FullTicks(*word, ticks));
-      else if (depth > 0 && stack.frames.items[depth - 1].region == region)
-        --stack.frames.count;
-      else
-        Leave(stack, region);
-      ++word;
-    } else {
-      const std::uint64_t words = WordsOf(*word);
-      const bool sound = words > 1 && words <= static_cast<std::uint64_t>(end - word);
-      folded.complete = folded.complete && sound && IsClosed(*word);
-      if (!sound) break;
-      if (IsClosed(*word) && KindOf(*word) != RecordKind::kOpenFrames) {
-        ++folded.events;
-        if (word[1] > ticks) ticks = word[1];
-        Follow(stack, word);
-      }
-      word += words;
+      continue;
     }
+    if (!IsRecord(*word)) {
+      FoldRareEvent(stack, *word++, ticks);
+      ++folded.events;
+      continue;
+    }
+    const std::uint64_t words = WordsOf(*word);
+    const bool sound = words > 1 && words <= static_cast<std::uint64_t>(end - word);
+    folded.complete = folded.complete && sound && IsClosed(*word);
+    if (!sound) break;
+    if (IsClosed(*word) && KindOf(*word) != RecordKind::kOpenFrames) {
+      ++folded.events;
+      if (word[1] > ticks) ticks = word[1];
+      Follow(stack, word);
+    }
+    word += words;
   }
   return folded;
 }

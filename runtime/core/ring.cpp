@@ -130,6 +130,16 @@ bool NoteOverwritten(Process& process, const RingPlace& place) {
   return true;
 }
 
+/// Says once from when on events were lost for want of a place. The lock is held.
+void NoteFull(Process& process, std::uint64_t ticks) {
+  if (process.ring.said_full != 0) return;
+  process.ring.said_full = 1;
+  Loss record{};
+  record.from_ticks = ticks;
+  record.error = ENOBUFS;
+  Define(process, &record, Loss::kKind, sizeof record);
+}
+
 /// The place closed longest ago whose events may go; 0: none. The lock is held.
 std::uint32_t Recycle(Process& process, std::uint64_t ticks) {
   Ring& ring = process.ring;
@@ -142,6 +152,7 @@ std::uint32_t Recycle(Process& process, std::uint64_t ticks) {
     if (number == last) break;
   }
   ring.retry_ticks = ticks + kRetryTicks;
+  NoteFull(process, ticks);
   return 0;
 }
 
@@ -169,8 +180,9 @@ std::uint32_t TakePlaceFor(Process& process, Thread& thread, std::uint64_t ticks
   return number;
 }
 
-/// Reads the thread's full chunk back and gives it to the ring. The lock is held.
-void CloseChunk(Process& process, Thread& thread, std::uint64_t ticks) {
+/// Reads the thread's full chunk back; returns its place, which is not the ring's yet (0: it is,
+/// the thread has ended). The lock is held.
+std::uint32_t CloseChunk(Process& process, Thread& thread, std::uint64_t ticks) {
   Ring& ring = process.ring;
   RingThread* known = RingThreadOf(ring, thread);
   RingPlace& place = PlaceAt(ring, thread.place);
@@ -181,17 +193,17 @@ void CloseChunk(Process& process, Thread& thread, std::uint64_t ticks) {
   none.unknown = 1;
   const FoldedChunk folded = FoldChunk(known != nullptr ? known->frames : none,
                                        FirstWord(thread.chunk), end, TicksOf(thread.chunk));
-  const bool is_closed = place.is_window;  // the thread has ended, and goes on
+  const std::uint32_t closed = place.is_window ? 0 : thread.place;
   place.events = folded.events;
   place.closed_ticks = ticks;
   place.incomplete = !folded.complete;
   place.is_window = false;
-  if (!is_closed) PushClosed(ring, thread.place);
   thread.chunk = nullptr;
   thread.place = 0;
   // Until it has another, every event takes the slow path.
   thread.chunk_end = thread.control.end = 0;
   thread.step = 0;
+  return closed;
 }
 
 /// No granule may look like a chunk while its words are being cleared.
@@ -222,14 +234,19 @@ void BeginRing(Process& process, std::uint64_t max_bytes) {
   process.file.ahead_limit = kGranuleBytes + most * place_bytes;
 }
 
-bool TakeRingChunk(Process& process, Thread& thread, std::uint64_t ticks) {
+bool TakeRingChunk(Process& process, Thread& thread, std::uint64_t ticks, std::uint32_t* closed) {
   std::uint32_t number = 0;
   {
     Holding holding(process.lock);
-    const bool had_chunk = thread.chunk != nullptr;
-    if (had_chunk) CloseChunk(process, thread, ticks);
-    if (had_chunk) process.ring.retry_ticks = 0;  // this one is free now
+    *closed = thread.chunk != nullptr ? CloseChunk(process, thread, ticks) : 0;
     number = TakePlaceFor(process, thread, ticks);
+    if (number == 0 && *closed != 0) {
+      // No other is free: its own.
+      PushClosed(process.ring, *closed);
+      *closed = 0;
+      process.ring.retry_ticks = 0;
+      number = TakePlaceFor(process, thread, ticks);
+    }
   }
   if (number == 0) return false;
   RingPlace& place = PlaceAt(process.ring, number);
@@ -238,6 +255,12 @@ bool TakeRingChunk(Process& process, Thread& thread, std::uint64_t ticks) {
   thread.chunk = place.memory;
   thread.chunk_bytes = process.ring.place_bytes;
   return true;
+}
+
+void GiveToRing(Process& process, std::uint32_t closed) {
+  if (closed == 0) return;
+  Holding holding(process.lock);
+  PushClosed(process.ring, closed);
 }
 
 std::uint64_t WriteOpenFrames(const Thread& thread, char* place, std::uint64_t ticks) {

@@ -32,6 +32,7 @@ struct Ring {
   std::uint32_t newest;
   std::uint64_t retry_ticks;  // no place was free: do not look again before this
   char* spare;                // RingThreads never used
+  std::uint32_t said_full;    // whether that no place was free has been noted
   std::uint32_t spare_count;
 };
 
@@ -51,8 +52,10 @@ inline bool FitsRing(const Ring& ring, std::size_t bytes) { return bytes <= ring
 
 /// Closes the thread's chunk and gives it a cleared place; false if there is none now (each other
 /// one is the window of a thread that lives) or recording has stopped. Signals are blocked, the
-/// lock is not held.
-bool TakeRingChunk(Process& process, Thread& thread, std::uint64_t ticks);
+/// lock is not held. The chunk closed is not used again before GiveToRing: until the new one has
+/// its header it is the thread's last.
+bool TakeRingChunk(Process& process, Thread& thread, std::uint64_t ticks, std::uint32_t* closed);
+void GiveToRing(Process& process, std::uint32_t closed);
 
 /// Writes the thread's open frames at `place` if it has had a chunk before; returns the bytes.
 std::uint64_t WriteOpenFrames(const Thread& thread, char* place, std::uint64_t ticks);

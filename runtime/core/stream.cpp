@@ -342,7 +342,7 @@ std::uint32_t stipple_slow_event(std::uint32_t token, std::uint64_t stack) {
       return token;
     }
   }
-  CountLost(1);
+  CountLost(leave ? 1 : 2);  // the exit gets no token, so it says nothing
   return 0;
 }
 

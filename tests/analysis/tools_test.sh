@@ -27,6 +27,8 @@ expect 2 "missing archive" "$stipple" info none.stipple; has err "none.stipple"
 expect 2 "unknown clock" "$stipple" run --clock sundial -- true; has err "known: exact, sparse:N.*budget:P"
 expect 2 "a budget of nothing" "$stipple" run --clock budget:0 -- true; has err "known: exact"
 expect 2 "later option" "$stipple" run --sample 100 -- true; has err "known"
+expect 2 "no size" "$stipple" run --max-bytes 64Q -- true; has err "max-bytes.*64M, 2G"
+expect 2 "too small a ring" "$stipple" run --max-bytes 1000K -- true; has err "max-bytes.*the least is 1M"
 expect 2 "no command" "$stipple" run -o x; has err "no command"
 expect 2 "no compiler" "$stipple" flags nonsense
 
@@ -82,6 +84,12 @@ expect 0 "check" "$stipple" check app.stipple; has out "sound"
 expect 0 "info" "$stipple" info --json app.stipple
 for key in '"locations":\[{"rank":0,"process":0,"thread":0,"events":180}\]' '"ranks":1' '"lost":0' \
   '"unmatched_messages":0' '"span_s":' '"clock":{'; do has out "$key"; done
+sed 's/Fib(10)/Fib(24)/' app.cpp >long.cpp && g++ -O2 $flags long.cpp -o long || fail "compile"
+expect 0 "ring" "$stipple" run -o ring.stipple --max-bytes 1M -- ./long; has err "keeps only the last .* events before were overwritten"
+expect 0 "check of a ring" "$stipple" check ring.stipple; has out "sound"; has out "keeps only the last"
+expect 0 "info of a ring" "$stipple" info --json ring.stipple; has out '"ring":{"kept_from_s":.*"overwritten_events":[1-9]'; has out '"lost":0'
+expect 0 "profile of a ring" "$stipple" stats ring.stipple --table profile; has out main; has err "keeps only the last"
+[ "$(du -sb ring.stipple | cut -f1)" -le 1150000 ] || fail "the ring is larger than it may be"
 expect 0 "profile" "$stipple" stats app.stipple --table profile --format json
 has out '"region":"Fib(int)","file":"app.cpp","line":4,"calls":89,"inclusive_s":'
 expect 0 "states" "$stipple" stats app.stipple --table states --format json

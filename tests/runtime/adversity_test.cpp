@@ -5,12 +5,12 @@
 #include "adversity.h"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
+#include <signal.h>
+#include <sys/prctl.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <cstdlib>
-#include <optional>
 #include <random>
 #include <thread>
 
@@ -111,6 +111,7 @@ std::string ProblemsBeyondKill(const TraceHealth& health) {
 /// The writer in a process group of its own, killed as a whole after `ms` of work.
 void RunAndKill(const std::string& archive, const std::string& behaviour, const std::string& file,
                 std::uint64_t ring_bytes, int us) {
+  prctl(PR_SET_CHILD_SUBREAPER, 1);
   const pid_t writer = fork();
   if (writer == 0) {
     setpgid(0, 0);
@@ -129,9 +130,9 @@ void RunAndKill(const std::string& archive, const std::string& behaviour, const 
     while (progress_of(i) == 0) std::this_thread::yield();
   std::this_thread::sleep_for(std::chrono::microseconds(us));
   kill(-writer, SIGKILL);
-  waitpid(writer, nullptr, 0);
-  // The others of the group are nobody's children now: their streams are whole when they are gone.
-  while (kill(-writer, 0) == 0) std::this_thread::yield();
+  // The others of the group have lost their parent, and this process stands in for it.
+  while (waitpid(-writer, nullptr, 0) > 0) {
+  }
 }
 
 /// Nothing that was committed is lost or misread; nothing but whole visits is missing at the begin.
@@ -275,7 +276,7 @@ TEST(Ring, ASilentThreadKeepsItsLastChunk) {
   ASSERT_EQ(trace.locations().size(), 2u);
   EXPECT_EQ(PatternReader(trace).Read(trace.locations().front()).events, 2u);
   // Its one visit was entered before what is kept began.
-  EXPECT_EQ(trace.locations().front().begin_ns, 0);
+  EXPECT_NEAR(static_cast<double>(trace.locations().front().begin_ns), 0, 1);
 }
 
 TEST(Ring, ServesMoreThreadsThanItHasPlaces) {
@@ -294,9 +295,12 @@ TEST(Ring, WithoutAFreePlaceCountsWhatItLoses) {
   ASSERT_EQ(run.status, kStatus);
   const Trace trace = Trace::Open(archive.path());
   const TraceHealth health = trace.Health();
-  EXPECT_EQ(trace.locations().size(), 64u);
-  EXPECT_EQ(health.CountOf(Defect::kLostEvents), 36u * 100);
-  for (const stipple::Problem& p : health.problems()) EXPECT_TRUE(p.when) << TextOf(p);
+  const std::uint64_t lost = health.CountOf(Defect::kLostEvents);
+  EXPECT_GE(lost, 36u);  // at least the first visit of each that came too late
+  const std::uint64_t overwritten = trace.kept() ? trace.kept()->overwritten_events : 0;
+  EXPECT_EQ(trace.EventCount() + overwritten + lost, 100u * 102);
+  for (const stipple::Problem& p : health.problems())
+    EXPECT_TRUE(p.when || p.defect != Defect::kLostEvents) << TextOf(p);
 }
 
 /// A loss has a begin and an end within the run, the begin not before the first event.
@@ -376,16 +380,17 @@ TEST(Failure, AJailedProcessLosesTheRestAndSaysSo) {
 }
 
 TEST(Clock, ThatStepsBackIsReportedWithItsTime) {
-  for (const std::uint64_t ring : {std::uint64_t{0}, 16 * kMegabyte}) {
+  for (const std::uint64_t ring : {std::uint64_t{0}, 64 * kMegabyte}) {
     const Directory archive;
     EXPECT_EQ(RunWriter(archive.path(), "clock-back 400000", RingVariable(ring)).status, kStatus);
     const Trace trace = Trace::Open(archive.path());
     const Analysis analysis(trace);
-    ASSERT_EQ(analysis.health.problems().size(), 1u);
-    const stipple::Problem& problem = analysis.health.problems().front();
-    EXPECT_EQ(problem.defect, Defect::kClockStep) << TextOf(problem);
-    ASSERT_TRUE(problem.when);
-    EXPECT_GT(problem.when->from_ns, 0);
+    for (const stipple::Problem& p : analysis.health.problems()) {
+      EXPECT_EQ(p.defect, Defect::kClockStep) << TextOf(p);
+      EXPECT_TRUE(p.when && p.when->from_ns > 0) << TextOf(p);
+    }
+    EXPECT_EQ(analysis.health.CountOf(Defect::kClockStep), 1u);
+    EXPECT_LT(trace.SpanNs(), 60'000'000'000);  // the step is 15 minutes
     EXPECT_EQ(trace.EventCount(), 8u * 400'000 + 1);
     EXPECT_EQ(PatternReader(trace).Read(trace.locations().front()).events, 8u * 400'000);
   }
