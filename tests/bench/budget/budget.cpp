@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What a visit costs under a budget: the kernels of ../events, each in a process of its own with the
-// real runtime. First they run until nothing changes any more; then they run in turns with all slots
-// 0 (recording stopped), with the slots as the budget left them, and with all counted only.
+// What a visit costs under a budget: the kernels of ../events, each in a process of its own with
+// the real runtime. First they run until nothing changes any more; then they run in turns with all
+// slots 0 (recording stopped), with the slots as the budget left them, and with all counted only.
 //
 //   bench_budget ARCHIVE_DIRECTORY [ROUNDS]
 #include <sys/wait.h>
