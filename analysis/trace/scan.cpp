@@ -66,8 +66,12 @@ RecordStep StepRecord(const EventWord* word, const Chunk& chunk, std::uint64_t n
     ++counts.open_records;
     return {words, false, now};
   }
-  ++counts.records;
   const bool has_time = words > 1 && KindOf(*word) < RecordKind::kDefineRegion;
+  if (has_time && word[1] >= kMostTicks) {
+    ++counts.bad_records;
+    return {words, false, now};
+  }
+  ++counts.records;
   return {words, true, has_time ? std::max(now, std::min(word[1], limit)) : now};
 }
 

@@ -17,7 +17,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
-#include <limits>
 #include <span>
 
 #include "analysis/trace/stream.h"
@@ -78,7 +77,8 @@ UnclockedRun MeasureUnclocked(const EventWord* word, const EventWord* end, std::
                               std::uint64_t limit);
 
 inline constexpr std::uint64_t kBackwardTicks = std::uint64_t{1} << 36;
-inline constexpr std::uint64_t kNoTickLimit = std::numeric_limits<std::uint64_t>::max();
+/// No event is later: a counter would have to run for decades, so a larger time is damage.
+inline constexpr std::uint64_t kNoTickLimit = kMostTicks;
 
 /// The time of the event whose low 40 bits are `low`, after an event at `now`.
 constexpr std::uint64_t TicksAfter(std::uint64_t now, std::uint64_t low, std::uint64_t limit) {

@@ -110,7 +110,7 @@ struct DefinitionReader {
 
   bool Sync(std::span<const EventWord> words) {
     ClockSync d;
-    if (!Get(words, d)) return false;
+    if (!Get(words, d) || d.local_ticks >= kMostTicks || d.remote_ticks >= kMostTicks) return false;
     stream.syncs.push_back(d);
     return true;
   }
@@ -124,7 +124,7 @@ struct DefinitionReader {
 
   bool End(std::span<const EventWord> words) {
     ProcessEnd d;
-    if (!Get(words, d)) return false;
+    if (!Get(words, d) || d.ticks >= kMostTicks) return false;
     stream.end = d;
     stream.lost = std::max(stream.lost, d.lost);
     stream.clock_pairs.push_back({d.ticks, d.raw_ns});
@@ -319,9 +319,13 @@ FoundChunks FindChunks(Stream& stream) {
       stream.health.Add(Defect::kBadChunk, stream.file_name);
       h.bytes = bytes;
     }
+    if (h.ticks >= kMostTicks) {
+      stream.health.Add(Defect::kBadTime, stream.file_name);
+      h.ticks = 0;  // MendTimes finds it a place
+    }
     const Chunk chunk = ChunkAt(file, offset, h);
     if (offset + h.bytes > file.size()) stream.health.Add(Defect::kTruncatedFile, stream.file_name);
-    stream.clock_pairs.push_back({h.ticks, h.raw_ns});
+    if (h.ticks != 0) stream.clock_pairs.push_back({h.ticks, h.raw_ns});
     if (h.kind == ChunkKind::kDefinitions) {
       found.definitions.push_back(chunk);
     } else {
@@ -418,6 +422,10 @@ bool ReadHeader(Stream& stream, TraceHealth& health) {
       (h.minimum_reader_version > kFormatVersion || (h.features & ~kKnownFeatures) != 0)) {
     health.Add(Defect::kUnreadableFile, stream.file_name + " (needs a newer stipple)");
     return false;
+  }
+  if (h.start_ticks >= kMostTicks) {
+    stream.health.Add(Defect::kBadFileHeader, stream.file_name);
+    h.start_ticks = 0;
   }
   stream.boot_id = TextOf(h.boot_id, sizeof(h.boot_id));
   stream.host_name = TextOf(h.host_name, sizeof(h.host_name));

@@ -18,6 +18,9 @@
 
 namespace stipple {
 
+/// Times from here on are damage. Differences of sound ones fit a signed number.
+inline constexpr std::uint64_t kMostTicks = std::uint64_t{1} << 62;
+
 /// A file in memory, read-only.
 class MappedFile {
  public:

@@ -247,6 +247,20 @@ TEST(Trace, CountsWhatIsWrong) {
   EXPECT_EQ(health.LostEvents(), 2U);
 }
 
+TEST(Trace, TimeBeyondAllClocksIsDamage) {
+  StreamWriter s = Program();
+  s.Name(1, "phase");
+  s.NewChunk(1000);
+  s.Enter(1, 1000);
+  s.Append(Mark{0, std::uint64_t{1} << 63, 1, 0});
+  s.Leave(1, 1300);
+  TemporaryArchive archive;
+  archive.Add(s);
+  const Trace trace = Trace::Open(archive.path());
+  EXPECT_EQ(TimesOf(trace, 0), (std::vector<std::int64_t>{0, 300}));
+  EXPECT_FALSE(trace.Health().Sound());
+}
+
 TEST(Trace, EmptyAndMissingArchives) {
   TemporaryArchive archive;
   const Trace trace = Trace::Open(archive.path());
