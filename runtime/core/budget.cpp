@@ -160,7 +160,8 @@ void NoteStep(const Thread& thread, std::uint32_t region, RegionModeKind mode) {
   record.region = region;
   record.mode = mode;
   record.visits = budget->regions[region].visits;
-  record.mean_ticks = budget->regions[region].mean_ticks;
+  const std::uint64_t mean = budget->regions[region].mean_ticks;
+  record.mean_ticks = mean == kUnknown ? 0 : mean;
   if (budget->steps < Budget::kMostDegraded) budget->step_list[budget->steps++] = {record, &thread};
 }
 

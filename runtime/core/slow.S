@@ -55,9 +55,10 @@ stipple_slow:
 	.cfi_def_cfa rsp, 0
 	.cfi_register rip, r11
 	.cfi_remember_state
-	endbr64
 
-	/* Count: one less until this thread's next sample of the region (sample.h). The token is the
+	/* No endbr64: the jump to here is not tracked.
+	 *
+	 * Count: one less until this thread's next sample of the region (sample.h). The token is the
 	 * region and this one bit, so the bit is taken off in the address. */
 	testl	$STIPPLE_COUNT_ONLY, %eax
 	jz	.Lnot_counted
@@ -79,16 +80,16 @@ stipple_slow:
 	je	.Lcalled
 	notrack jmp	*%r11
 .Lcalled:
-	leaq	-136(%rsp), %rsp
+	leaq	-128(%rsp), %rsp
+	.cfi_def_cfa_offset 128
+	pushq	%rdx				/* again: a signal handler may have changed it */
 	.cfi_def_cfa_offset 136
-	cmpq	%rdx, (%rsp)			/* again: no signal handler changes it now */
-	jne	.Lnot_called
 	xorl	%edx, %edx
 	rdsspq	%rdx
 	testq	%rdx, %rdx			/* with a shadow stack, the routine has removed it there */
-	jnz	.Lnot_called
+	jnz	.Lnot_returning
 	ret
-.Lnot_called:
+.Lnot_returning:
 	leaq	136(%rsp), %rsp
 	.cfi_def_cfa_offset 0
 	notrack jmp	*%r11

@@ -423,7 +423,7 @@ struct RegionMode {
   std::uint32_t region;
   RegionModeKind mode;
   std::uint64_t visits;      // by this process until now, as far as the budget has seen them
-  std::uint64_t mean_ticks;  // of the visits that the decision rests on, enter to leave
+  std::uint64_t mean_ticks;  // of the visits that the decision rests on, enter to leave; 0: unknown
 };
 static_assert(sizeof(RegionMode) == 40);
 
