@@ -64,23 +64,6 @@ std::string StableText(const Trace& trace, const Process& p, const EventWord* re
   }
 }
 
-constexpr const char* NameOf(RegionModeKind mode) {
-  switch (mode) {
-    case RegionModeKind::kTimed:
-      return "timed";
-    case RegionModeKind::kNoClock:
-      return "without times";
-    case RegionModeKind::kCounted:
-      return "counted";
-  }
-  return "in an unknown mode";
-}
-
-std::string ModeText(const Trace& trace, const Process& p, const RegionMode& r) {
-  return fmt::format("from here on {} is {}: {} visits until now",
-                     RegionOfProcess(trace, p, r.region).name, NameOf(r.mode), r.visits);
-}
-
 /// Records that depend on timing.
 std::string TimingText(const Trace& trace, const Process& p, const EventWord* record) {
   switch (KindOf(*record)) {
@@ -96,8 +79,6 @@ std::string TimingText(const Trace& trace, const Process& p, const EventWord* re
       return fmt::format("probe {} from {} tag {}", r.bytes,
                          WorldText(trace, p, r.communicator, r.sender), r.tag);
     }
-    case RecordKind::kRegionMode:
-      return ModeText(trace, p, RecordAt<RegionMode>(record));
     case RecordKind::kTimeStamp:
       return "time stamp";
     case RecordKind::kJumpPoint:

@@ -21,12 +21,14 @@
 //   - the prices: they are medians of an empty visit in a loop. Where the processor overlaps a
 //     visit with its surroundings they are too high, where it cannot they are too low. That is the
 //     same for all visits, so it adds linearly: kSampleDoubt of the inner price for each visit that
-//     a sample stands for, kTimedDoubt of what was corrected for timed events;
+//     a sample stands for, kInsideDoubt of the outer price for each one recorded inside of it,
+//     kTimedDoubt of what was corrected for timed events;
 //   - the rest: visits after the last sample get the mean of all; all of that time is doubtful.
 //   - interruptions: a sample that was interrupted by the scheduler is thousands of times longer
 //     than the others, and would be multiplied by w. Such samples (very few, very long) count as
-//     the median does; what they would have added stands in the upper bound of Q and the lower of
-//     P.
+//     the median does; what they would have added, and as much more as so few events may be wrong
+//     by, stands in the upper bound of Q and the lower of P. A sample that holds the change of a
+//     chunk is left out;
 //   - what does not fit: samples that add up to more than P has are scaled down to it; what was
 //     taken off stays within the upper bound.
 // Bounds are never below 0, and never above what the timed frames around have.
@@ -52,6 +54,7 @@ namespace {
 
 constexpr double kPriceUnit = 256;
 constexpr double kSampleDoubt = 1.0 / 16;
+constexpr double kInsideDoubt = 1.0 / 8;
 constexpr double kTimedDoubt = 1.0 / 4;
 // A sample longer than both was interrupted, if there are few of that kind.
 constexpr double kInterruptedNs = 20'000;
@@ -72,6 +75,7 @@ struct Part {
   double linear = 0;    // both ways
   double surplus = 0;   // there may be as much more
   double visits = 0;
+  double interrupted = 0;  // samples
 };
 
 /// What the samples of one region say.
@@ -91,7 +95,7 @@ double InterruptedAbove(const RegionTally& tally, double median, double ns_per_t
   const double limit = std::max(kInterruptedNs / ns_per_tick, kInterruptedMedians * median);
   const auto above = static_cast<std::size_t>(std::ranges::count_if(
       tally.samples, [limit](const VisitSample& s) { return s.exclusive > limit; }));
-  return above <= 1 + tally.samples.size() / 1000 ? limit : INFINITY;
+  return above <= 3 + tally.samples.size() / 256 ? limit : INFINITY;
 }
 
 void AddChance(SampleSums& sums, const VisitSample* before, std::uint32_t around, double visits,
@@ -113,13 +117,16 @@ SampleSums SumsOf(const RegionTally& tally, const EventPrices& prices, double ns
   for (const VisitSample& s : tally.samples) exclusive.push_back(s.exclusive);
   const double median = Median(std::move(exclusive));
   const double limit = InterruptedAbove(tally, median, ns_per_tick);
-  const double doubt = static_cast<double>(prices.sampled_inner) / kPriceUnit * kSampleDoubt;
+  const double inner = static_cast<double>(prices.sampled_inner) / kPriceUnit * kSampleDoubt;
+  const double outer = static_cast<double>(prices.SampledOuter()) / kPriceUnit * kInsideDoubt;
   const VisitSample* before = nullptr;
   double last_inclusive = 0;
   std::vector<VisitSample> kept(tally.samples);
   for (VisitSample& s : kept) {
     Part& part = sums.around[s.around];
+    const double doubt = inner + s.inside * outer;
     if (s.exclusive > limit) {
+      ++part.interrupted;
       part.surplus += (s.exclusive - median) * s.visits;
       s.inclusive -= s.exclusive - median;
       s.exclusive = median;
@@ -137,7 +144,12 @@ SampleSums SumsOf(const RegionTally& tally, const EventPrices& prices, double ns
     before = &s;
   }
   const double sigmas = SigmasFor(kept.size());
-  for (auto& [around, part] : sums.around) part.variance *= sigmas * sigmas;
+  for (auto& [around, part] : sums.around) {
+    part.variance *= sigmas * sigmas;
+    // Where few were seen, three sigma of a Poisson distribution are many more.
+    if (part.interrupted != 0)
+      part.surplus *= 1 + 3 / std::sqrt(part.interrupted) + 4 / part.interrupted;
+  }
   sums.inclusive.variance *= sigmas * sigmas;
   return sums;
 }
@@ -279,7 +291,7 @@ class Estimator {
     if (!t.samples.empty() || t.pending == 0 || t.timed_visits == 0) return;
     const double mean = static_cast<double>(t.exclusive) / static_cast<double>(t.timed_visits);
     const double ticks = std::min(total_, mean * static_cast<double>(t.pending));
-    Add(accounts_[q].in, {ticks, 0, ticks, 0, 0});
+    Add(accounts_[q].in, {ticks, 0, ticks, 0, 0, 0});
     accounts_[q].room += total_;
   }
   double TimedDoubt(std::size_t r) const {

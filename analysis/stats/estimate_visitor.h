@@ -43,6 +43,7 @@ struct VisitSample {
   double visits = 1;
   double inclusive = 0;
   double exclusive = 0;
+  double inside = 0;  // visits that were recorded directly inside
 };
 
 /// What a location has of one region.
@@ -166,7 +167,11 @@ class EstimateVisitor {
   EstimateVisitor(const EstimateVisitor&) = delete;
   EstimateVisitor& operator=(const EstimateVisitor&) = delete;
 
-  Hot Begin() const { return hot_; }
+  /// Each chunk is a scan of its own.
+  Hot Begin() {
+    ++chunks_;
+    return hot_;
+  }
   void End(const Hot& hot) { hot_ = hot; }
   /// Ends the frames that are still open. `counts`: visits without events since the last samples.
   void Finish(std::uint64_t ticks, std::span<const VisitCount> counts, std::uint32_t thread);
@@ -187,6 +192,8 @@ class EstimateVisitor {
     std::uint64_t visits;
     std::uint64_t inside;       // ticks of what was recorded directly inside
     std::uint64_t inside_cost;  // 1/256 ticks, of those events outside of their own time
+    std::uint64_t inside_visits;
+    std::uint64_t chunk;
     bool nested;
     bool counts;  // lies in the selected span
   };
@@ -224,6 +231,7 @@ class EstimateVisitor {
   std::vector<OpenSample> open_samples_;  // outermost first
   MpiCollector* collector_;
   std::uint64_t unclocked_events_ = 0;
+  std::uint64_t chunks_ = 0;
   std::uint64_t leaves_without_enter_ = 0;
   std::uint64_t enters_without_leave_ = 0;
   std::vector<ModeStep> steps_;
