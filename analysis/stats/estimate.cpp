@@ -22,7 +22,10 @@
 //     visit with its surroundings they are too high, where it cannot they are too low. That is the
 //     same for all visits, so it adds linearly: kSampleDoubt of the inner price for each visit that
 //     a sample stands for, kInsideDoubt of the outer price for each one recorded inside of it,
-//     kTimedDoubt of what was corrected for timed events;
+//     besides, a processor reads the clock when it gets to it, which may be before the work ahead
+//     of it is done; what is then left counts for the next region. Samples wait for that work,
+//     timed events do not: each of their visits is doubtful by one reading of the clock, for the
+//     region and for the one around it;
 //   - the rest: visits after the last sample get the mean of all; all of that time is doubtful.
 //   - interruptions: a sample that was interrupted by the scheduler is thousands of times longer
 //     than the others, and would be multiplied by w. Such samples (very few, very long) count as
@@ -54,11 +57,11 @@ namespace {
 
 constexpr double kPriceUnit = 256;
 constexpr double kSampleDoubt = 1.0 / 16;
-constexpr double kInsideDoubt = 1.0 / 8;
-constexpr double kTimedDoubt = 1.0 / 4;
+constexpr double kInsideDoubt = 1.0 / 4;
 // A sample longer than both was interrupted, if there are few of that kind.
 constexpr double kInterruptedNs = 20'000;
 constexpr double kInterruptedMedians = 64;
+constexpr double kDisturbedMedians = 4;
 
 /// Student's t at the confidence of three sigma.
 double SigmasFor(std::size_t samples) {
@@ -90,8 +93,12 @@ double Median(std::vector<double> values) {
   return *middle;
 }
 
-/// Samples above this were interrupted.
-double InterruptedAbove(const RegionTally& tally, double median, double ns_per_tick) {
+/// Samples above this were interrupted, by the scheduler or, where something was recorded inside,
+/// by the recorder's own rare work.
+double InterruptedAbove(const RegionTally& tally, double median, double inside_price,
+                        double ns_per_tick) {
+  if (std::ranges::any_of(tally.samples, [](const VisitSample& s) { return s.inside > 0; }))
+    return kDisturbedMedians * std::max(median, inside_price);
   const double limit = std::max(kInterruptedNs / ns_per_tick, kInterruptedMedians * median);
   const auto above = static_cast<std::size_t>(std::ranges::count_if(
       tally.samples, [limit](const VisitSample& s) { return s.exclusive > limit; }));
@@ -116,9 +123,9 @@ SampleSums SumsOf(const RegionTally& tally, const EventPrices& prices, double ns
   std::vector<double> exclusive;
   for (const VisitSample& s : tally.samples) exclusive.push_back(s.exclusive);
   const double median = Median(std::move(exclusive));
-  const double limit = InterruptedAbove(tally, median, ns_per_tick);
   const double inner = static_cast<double>(prices.sampled_inner) / kPriceUnit * kSampleDoubt;
   const double outer = static_cast<double>(prices.SampledOuter()) / kPriceUnit * kInsideDoubt;
+  const double limit = InterruptedAbove(tally, median, outer / kInsideDoubt, ns_per_tick);
   const VisitSample* before = nullptr;
   double last_inclusive = 0;
   std::vector<VisitSample> kept(tally.samples);
@@ -184,7 +191,8 @@ struct Account {
     const double doubt =
         std::sqrt(in.variance + out.variance) + in.linear + out.linear + timed_doubt;
     return {value, std::clamp(value - doubt - out.surplus, 0.0, value),
-            std::max(value, std::min(value + doubt + in.surplus, std::max(0.0, timed) + room))};
+            std::max(value, std::min(value + doubt + in.surplus,
+                                     std::max(0.0, timed) + timed_doubt + room))};
   }
 };
 
@@ -244,13 +252,13 @@ class Estimator {
   }
   /// What recording cost within each region's own time; never more than all of it.
   void ChargeCosts() {
-    const double sparse = SparsePart();
+    sparse_ = SparsePart();
     for (std::size_t r = 0; r < accounts_.size(); ++r) {
       const RegionTally& t = visitor_.regions()[r];
       const auto timed = static_cast<double>(t.timed_visits * prices_.timed_inner +
                                              t.timed_children * prices_.TimedOuter());
       const auto all = static_cast<double>(t.exclusive);
-      const double cost = (timed * sparse + static_cast<double>(t.other_cost)) / kPriceUnit;
+      const double cost = (timed * sparse_ + static_cast<double>(t.other_cost)) / kPriceUnit;
       accounts_[r].cost = std::min(cost, all);
       accounts_[r].timed = all - accounts_[r].cost;
       total_ += accounts_[r].timed;
@@ -294,10 +302,13 @@ class Estimator {
     Add(accounts_[q].in, {ticks, 0, ticks, 0, 0, 0});
     accounts_[q].room += total_;
   }
-  double TimedDoubt(std::size_t r) const {
-    return std::min(accounts_[r].cost, accounts_[r].timed) * kTimedDoubt;
+  double TimedDoubt(std::uint64_t visits) const {
+    return static_cast<double>(visits * prices_.clock_read) / kPriceUnit * sparse_;
   }
-  Bounded ExclusiveOf(std::size_t r) const { return accounts_[r].Exclusive(TimedDoubt(r)); }
+  Bounded ExclusiveOf(std::size_t r) const {
+    const RegionTally& t = visitor_.regions()[r];
+    return accounts_[r].Exclusive(TimedDoubt(t.timed_visits + t.timed_children));
+  }
   Bounded InclusiveOf(std::size_t r) const {
     const RegionTally& t = visitor_.regions()[r];
     const Bounded exclusive = ExclusiveOf(r);
@@ -306,8 +317,7 @@ class Estimator {
     const double timed = std::max(0.0, static_cast<double>(t.inclusive) - cost);
     const double value =
         std::clamp(timed + part.ticks, exclusive.value, std::max(exclusive.value, total_));
-    const double doubt =
-        std::sqrt(part.variance) + part.linear + kTimedDoubt * std::min(cost, timed);
+    const double doubt = std::sqrt(part.variance) + part.linear + TimedDoubt(t.timed_visits);
     const double most = std::max(value, total_);
     if (t.recursive) return {value, exclusive.low, most};
     return {value, std::clamp(value - doubt, exclusive.low, value),
@@ -317,6 +327,7 @@ class Estimator {
   const EstimateVisitor& visitor_;
   const EventPrices& prices_;
   double ns_per_tick_;
+  double sparse_ = 1;
   double total_ = 0;  // of the thread, without what recording cost
   std::vector<Account> accounts_;
   std::vector<SampleSums> sums_;

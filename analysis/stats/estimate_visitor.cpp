@@ -19,8 +19,8 @@ bool IsJump(RecordKind kind) {
 EventPrices EventPrices::Of(const Stream& stream) {
   if (!stream.calibration) return {};
   const Calibration& c = *stream.calibration;
-  return {c.timed_visit,   c.timed_inner,    c.sampled_visit,
-          c.sampled_inner, c.no_clock_visit, c.counted_visit};
+  return {c.timed_visit,    c.timed_inner,   c.sampled_visit, c.sampled_inner,
+          c.no_clock_visit, c.counted_visit, c.clock_read};
 }
 
 EstimateVisitor::EstimateVisitor(std::uint32_t region_count, std::uint64_t begin, std::uint64_t end,

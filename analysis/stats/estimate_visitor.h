@@ -29,6 +29,7 @@ struct EventPrices {
   std::uint64_t sampled_inner = 0;
   std::uint64_t no_clock = 0;
   std::uint64_t counted = 0;
+  std::uint64_t clock_read = 0;
 
   static EventPrices Of(const Stream& stream);
   std::uint64_t TimedOuter() const { return timed - std::min(timed, timed_inner); }
