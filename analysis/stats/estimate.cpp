@@ -21,11 +21,13 @@
 //   - the prices: they are medians of an empty visit in a loop. Where the processor overlaps a
 //     visit with its surroundings they are too high, where it cannot they are too low. That is the
 //     same for all visits, so it adds linearly: kSampleDoubt of the inner price for each visit that
-//     a sample stands for, kInsideDoubt of the outer price for each one recorded inside of it,
-//     besides, a processor reads the clock when it gets to it, which may be before the work ahead
+//     a sample stands for, kInsideDoubt of the outer price for each one recorded inside of it.
+//     Besides, a processor reads the clock when it gets to it, which may be before the work ahead
 //     of it is done; what is then left counts for the next region. Samples wait for that work,
-//     timed events do not: each of their visits is doubtful by one reading of the clock, for the
-//     region and for the one around it;
+//     timed events do not. And full windows are copied away, which no price contains. So each timed
+//     visit is doubtful by kReadingsDoubt readings of the clock, for the region and for the one
+//     around it. The constants are those that hold on tests/bench/accuracy with caches that other
+//     programs use, too: a sample's code is seldom run and often not in the cache;
 //   - the rest: visits after the last sample get the mean of all; all of that time is doubtful.
 //   - interruptions: a sample that was interrupted by the scheduler is thousands of times longer
 //     than the others, and would be multiplied by w. Such samples (very few, very long) count as
@@ -40,10 +42,9 @@
 // outermost visits only, which samples do not tell from others: the bounds then are the exclusive
 // time and all that the thread has.
 //
-// Tried and left: trapezoids of neighbouring samples (no difference beyond the noise, as strides
-// are short beside trends); the ordinary variance (twice as wide on growing containers); least
-// squares for regions between the events of a sparse run (in loops each run has the same mix of
-// regions, so that the equations are singular just where a better estimate is wanted).
+// Not done: least squares for regions between the events of a sparse run. In a loop each run has
+// the same mix of regions, so that the equations are singular just where a better estimate is
+// wanted.
 #include "analysis/stats/estimate.h"
 
 #include <algorithm>
@@ -56,8 +57,9 @@ namespace stipple {
 namespace {
 
 constexpr double kPriceUnit = 256;
-constexpr double kSampleDoubt = 1.0 / 16;
+constexpr double kSampleDoubt = 1.0 / 6;
 constexpr double kInsideDoubt = 1.0 / 4;
+constexpr double kReadingsDoubt = 1.5;
 // A sample longer than both was interrupted, if there are few of that kind.
 constexpr double kInterruptedNs = 20'000;
 constexpr double kInterruptedMedians = 64;
@@ -303,7 +305,7 @@ class Estimator {
     accounts_[q].room += total_;
   }
   double TimedDoubt(std::uint64_t visits) const {
-    return static_cast<double>(visits * prices_.clock_read) / kPriceUnit * sparse_;
+    return static_cast<double>(visits * prices_.clock_read) / kPriceUnit * kReadingsDoubt * sparse_;
   }
   Bounded ExclusiveOf(std::size_t r) const {
     const RegionTally& t = visitor_.regions()[r];
