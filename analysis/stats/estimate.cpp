@@ -57,7 +57,7 @@ namespace stipple {
 namespace {
 
 constexpr double kPriceUnit = 256;
-constexpr double kSampleDoubt = 1.0 / 6;
+constexpr double kSampleDoubt = 1.0 / 3;
 constexpr double kInsideDoubt = 1.0 / 4;
 constexpr double kReadingsDoubt = 1.5;
 // A sample longer than both was interrupted, if there are few of that kind.
