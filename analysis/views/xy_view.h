@@ -24,16 +24,16 @@ struct XySeries {
 
 /// A range of whole powers of ten.
 struct XyAxis {
-  std::string title;  // with the unit
+  std::string title{};  // with the unit
   int least = -1;     // power of ten
   int most = 2;
 };
 
 struct XyChart {
-  std::string name;   // of the scene
-  std::string title;  // for screen readers
-  XyAxis x, y;
-  std::vector<XySeries> series;
+  std::string name{};   // of the scene
+  std::string title{};  // for screen readers
+  XyAxis x{}, y{};
+  std::vector<XySeries> series{};
   double width = 720, height = 420;  // pixels
 };
 
