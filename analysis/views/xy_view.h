@@ -25,7 +25,7 @@ struct XySeries {
 /// A range of whole powers of ten.
 struct XyAxis {
   std::string title{};  // with the unit
-  int least = -1;     // power of ten
+  int least = -1;       // power of ten
   int most = 2;
 };
 
