@@ -22,7 +22,7 @@ std::string Name(const std::string& region) {
   return EscapeMarkup(ShortenMiddle(ShortName(region), kNameCharacters));
 }
 
-std::string PercentOf(double share) { return fmt::format("{:.2g} %", share * 100); }
+std::string PercentOf(double share) { return FormatThreeDigits(share * 100) + " %"; }
 
 std::string Fact(std::string_view what, const std::string& value) {
   return fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", what, value);
