@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "analysis/report/html.h"
+#include "analysis/report/html_quality.h"
 #include "analysis/report/html_style.h"
 #include "analysis/report/html_table.h"
 #include "analysis/stats/number.h"
@@ -145,7 +146,8 @@ std::string ReportPage(const ReportInput& input) {
   page += Header(input) + "<main>\n" + Overview(input, views) + Communication(input, views);
   const std::string waits = WaitsSection(input.waits, input.finding.culprit,
                                          NounFor(input.timeline), HostOf(input.timeline));
-  page += ProfileSection(input.profile) + waits + "</main>\n" + Quality(input);
+  page += ProfileSection(input.profile) + waits + AccuracySection(input.accuracy) + "</main>\n" +
+          Quality(input);
   page +=
       "<script type=\"application/json\" id=\"hover\">" + HoverData(views) + "</script>\n<script>";
   page += PageScript();

@@ -73,6 +73,7 @@ details table{width:auto;margin-top:8px;font-size:12px}
 details .scroll{overflow-x:auto}
 .quality{margin-top:26px;border-top:1px solid var(--grid);padding-top:12px;color:var(--secondary);font-size:12.5px}
 .quality ul{margin:4px 0 0;padding-left:18px}
+.accuracy table{width:auto;margin-bottom:14px}.accuracy td,.accuracy th{padding-right:28px}
 #tip{position:absolute;z-index:2;pointer-events:none;background:var(--ground);color:var(--ink);border:1px solid var(--hair);border-radius:4px;padding:6px 9px;font-size:12px;line-height:1.5;box-shadow:0 2px 8px #0002;white-space:nowrap}
 #tip b{display:block}
 .cursor{stroke:var(--ink);stroke-width:1;opacity:.55;pointer-events:none}

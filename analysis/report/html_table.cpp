@@ -41,6 +41,16 @@ std::string TimeCell(const Cell& cell) {
   return fmt::format("<td class=\"n\" data-v=\"{:.9g}\">{}</td>", seconds, FormatSeconds(seconds));
 }
 
+/// A time with what it may be wrong by, where that is more than a hundredth of it.
+std::string DoubtfulCell(const Cell& cell, const Cell& low, const Cell& high) {
+  const double seconds = CellNumber(cell);
+  const double doubt = std::max(CellNumber(high) - seconds, seconds - CellNumber(low));
+  if (std::holds_alternative<std::monostate>(high) || !(doubt > 0.01 * seconds))
+    return TimeCell(cell);
+  return fmt::format("<td class=\"n\" data-v=\"{:.9g}\">{} \u00b1{}</td>", seconds,
+                     FormatSeconds(seconds), FormatSeconds(doubt));
+}
+
 std::string ShareCell(double value, double whole, double largest) {
   const double share = whole > 0 ? value / whole : 0;
   return fmt::format(
@@ -81,7 +91,9 @@ std::string ProfileRow(const Table& profile, const Row& row, double whole, doubl
   const auto count = static_cast<std::int64_t>(CellNumber(calls));
   return "<tr>" + FunctionCell(profile, row) +
          fmt::format("<td class=\"n\" data-v=\"{}\">{}</td>", count, FormatCount(count)) +
-         TimeCell(CellOf(profile, row, "inclusive_s")) + TimeCell(exclusive) +
+         TimeCell(CellOf(profile, row, "inclusive_s")) +
+         DoubtfulCell(exclusive, CellOf(profile, row, "exclusive_low_s"),
+                      CellOf(profile, row, "exclusive_high_s")) +
          ShareCell(CellNumber(exclusive), whole, largest) + "</tr>\n";
 }
 

@@ -3,11 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <set>
+
 #include "analysis/report/left_out.h"
 #include "analysis/report/text.h"
 #include "analysis/stats/finding_of.h"
 #include "analysis/stats/message_matrix.h"
 #include "analysis/stats/number.h"
+#include "analysis/stats/overhead.h"
 #include "analysis/stats/profile.h"
 #include "analysis/stats/states.h"
 #include "analysis/stats/timeline_of.h"
@@ -54,6 +57,40 @@ Timeline DetailOf(const Analysis& analysis, const Timeline& whole, std::size_t c
   return detail;
 }
 
+constexpr std::string_view WordsOf(RegionModeKind mode) {
+  switch (mode) {
+    case RegionModeKind::kNoClock:
+      return "events without times";
+    case RegionModeKind::kCounted:
+      return "counted, one visit in about 1,000 timed";
+    default:
+      return "all events with times";
+  }
+}
+
+RunAccuracy AccuracyOf(const Analysis& analysis) {
+  const RunQuality quality = QualityOf(analysis, {});
+  const ClockReport& clock = analysis.trace.clock();
+  RunAccuracy accuracy{quality.clock,
+                       quality.calibrated,
+                       quality.cost_ns * 1e-9,
+                       quality.time_ns * 1e-9,
+                       quality.doubt,
+                       quality.doubtful,
+                       0,
+                       clock.computers,
+                       clock.residual_ns * 1e-9,
+                       {}};
+  std::set<std::uint32_t> degraded;
+  for (const BudgetStep& s : analysis.steps) {
+    degraded.insert(s.region);
+    accuracy.steps.push_back({analysis.trace.regions()[s.region].name, WordsOf(s.mode),
+                              static_cast<double>(s.time_ns) * 1e-9, s.visits, s.mean_ns * 1e-9});
+  }
+  accuracy.degraded = degraded.size();
+  return accuracy;
+}
+
 }  // namespace
 
 ReportInput ReportInputOf(const Analysis& analysis, std::size_t columns) {
@@ -71,6 +108,7 @@ ReportInput ReportInputOf(const Analysis& analysis, std::size_t columns) {
   input.volume = VolumeTable(analysis, all);
   input.profile = ProfileTable(analysis, all, false);
   input.waits = WaitsTable(trace, blames);
+  input.accuracy = AccuracyOf(analysis);
   for (std::string& text : LeftOutTexts(trace)) input.health.push_back(std::move(text));
   for (const Problem& p : analysis.health.problems())
     if (p.defect != Defect::kStillRunning) input.health.push_back(TextOf(p));

@@ -5,7 +5,9 @@
 #define STIPPLE_ANALYSIS_REPORT_REPORT_INPUT_H
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "analysis/stats/finding.h"
@@ -16,6 +18,28 @@ namespace stipple {
 
 struct Analysis;
 
+/// Where the run stands between speed and accuracy.
+struct RunAccuracy {
+  /// The budget changed how a region is recorded.
+  struct Step {
+    std::string region;
+    std::string_view what;
+    double time_s = 0;
+    std::uint64_t visits = 0;  // until then
+    double mean_s = 0;         // of one
+  };
+  std::string clock;        // its mode
+  bool calibrated = false;  // else cost and doubt are not known
+  double cost_s = 0;
+  double time_s = 0;
+  double doubt = 0;      // largest relative one of a region's exclusive time
+  std::string doubtful;  // that region
+  std::size_t degraded = 0;
+  std::size_t computers = 1;
+  double residual_s = 0;  // of clocks
+  std::vector<Step> steps;
+};
+
 struct ReportInput {
   std::string title;  // the traced program
   Finding finding;
@@ -25,8 +49,9 @@ struct ReportInput {
   Table states;
   Table messages;
   Table volume;
-  Table profile;                    // most exclusive time first
-  Table waits;                      // longest first
+  Table profile;  // most exclusive time first
+  Table waits;    // longest first
+  RunAccuracy accuracy;
   std::vector<std::string> health;  // one line per problem; empty: the archive is sound
   bool mono = false;                // patterns instead of colours
 };

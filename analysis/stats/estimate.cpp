@@ -21,12 +21,19 @@
 //   - the prices: they are medians of an empty visit in a loop. Where the processor overlaps a
 //     visit with its surroundings they are too high, where it cannot they are too low. That is the
 //     same for all visits, so it adds linearly: kSampleDoubt of the inner price for each visit that
-//     a sample stands for, kTimedDoubt of what was corrected for timed events;
+//     a sample stands for, kInsideDoubt of the outer price for each one recorded inside of it.
+//     Besides, a processor reads the clock when it gets to it, which may be before the work ahead
+//     of it is done; what is then left counts for the next region. Samples wait for that work,
+//     timed events do not. And full windows are copied away, which no price contains. So each timed
+//     visit is doubtful by kReadingsDoubt readings of the clock, for the region and for the one
+//     around it. The constants are those that hold on tests/bench/accuracy with caches that other
+//     programs use, too: a sample's code is seldom run and often not in the cache;
 //   - the rest: visits after the last sample get the mean of all; all of that time is doubtful.
 //   - interruptions: a sample that was interrupted by the scheduler is thousands of times longer
 //     than the others, and would be multiplied by w. Such samples (very few, very long) count as
-//     the median does; what they would have added stands in the upper bound of Q and the lower of
-//     P.
+//     the median does; what they would have added, and as much more as so few events may be wrong
+//     by, stands in the upper bound of Q and the lower of P. A sample that holds the change of a
+//     chunk is left out;
 //   - what does not fit: samples that add up to more than P has are scaled down to it; what was
 //     taken off stays within the upper bound.
 // Bounds are never below 0, and never above what the timed frames around have.
@@ -35,10 +42,9 @@
 // outermost visits only, which samples do not tell from others: the bounds then are the exclusive
 // time and all that the thread has.
 //
-// Tried and left: trapezoids of neighbouring samples (no difference beyond the noise, as strides
-// are short beside trends); the ordinary variance (twice as wide on growing containers); least
-// squares for regions between the events of a sparse run (in loops each run has the same mix of
-// regions, so that the equations are singular just where a better estimate is wanted).
+// Not done: least squares for regions between the events of a sparse run. In a loop each run has
+// the same mix of regions, so that the equations are singular just where a better estimate is
+// wanted.
 #include "analysis/stats/estimate.h"
 
 #include <algorithm>
@@ -51,11 +57,13 @@ namespace stipple {
 namespace {
 
 constexpr double kPriceUnit = 256;
-constexpr double kSampleDoubt = 1.0 / 16;
-constexpr double kTimedDoubt = 1.0 / 4;
+constexpr double kSampleDoubt = 1.0 / 3;
+constexpr double kInsideDoubt = 1.0 / 4;
+constexpr double kReadingsDoubt = 1.5;
 // A sample longer than both was interrupted, if there are few of that kind.
 constexpr double kInterruptedNs = 20'000;
 constexpr double kInterruptedMedians = 64;
+constexpr double kDisturbedMedians = 4;
 
 /// Student's t at the confidence of three sigma.
 double SigmasFor(std::size_t samples) {
@@ -72,6 +80,7 @@ struct Part {
   double linear = 0;    // both ways
   double surplus = 0;   // there may be as much more
   double visits = 0;
+  double interrupted = 0;  // samples
 };
 
 /// What the samples of one region say.
@@ -86,12 +95,16 @@ double Median(std::vector<double> values) {
   return *middle;
 }
 
-/// Samples above this were interrupted.
-double InterruptedAbove(const RegionTally& tally, double median, double ns_per_tick) {
+/// Samples above this were interrupted, by the scheduler or, where something was recorded inside,
+/// by the recorder's own rare work.
+double InterruptedAbove(const RegionTally& tally, double median, double inside_price,
+                        double ns_per_tick) {
+  if (std::ranges::any_of(tally.samples, [](const VisitSample& s) { return s.inside > 0; }))
+    return kDisturbedMedians * std::max(median, inside_price);
   const double limit = std::max(kInterruptedNs / ns_per_tick, kInterruptedMedians * median);
   const auto above = static_cast<std::size_t>(std::ranges::count_if(
       tally.samples, [limit](const VisitSample& s) { return s.exclusive > limit; }));
-  return above <= 1 + tally.samples.size() / 1000 ? limit : INFINITY;
+  return above <= 3 + tally.samples.size() / 256 ? limit : INFINITY;
 }
 
 void AddChance(SampleSums& sums, const VisitSample* before, std::uint32_t around, double visits,
@@ -112,14 +125,17 @@ SampleSums SumsOf(const RegionTally& tally, const EventPrices& prices, double ns
   std::vector<double> exclusive;
   for (const VisitSample& s : tally.samples) exclusive.push_back(s.exclusive);
   const double median = Median(std::move(exclusive));
-  const double limit = InterruptedAbove(tally, median, ns_per_tick);
-  const double doubt = static_cast<double>(prices.sampled_inner) / kPriceUnit * kSampleDoubt;
+  const double inner = static_cast<double>(prices.sampled_inner) / kPriceUnit * kSampleDoubt;
+  const double outer = static_cast<double>(prices.SampledOuter()) / kPriceUnit * kInsideDoubt;
+  const double limit = InterruptedAbove(tally, median, outer / kInsideDoubt, ns_per_tick);
   const VisitSample* before = nullptr;
   double last_inclusive = 0;
   std::vector<VisitSample> kept(tally.samples);
   for (VisitSample& s : kept) {
     Part& part = sums.around[s.around];
+    const double doubt = inner + s.inside * outer;
     if (s.exclusive > limit) {
+      ++part.interrupted;
       part.surplus += (s.exclusive - median) * s.visits;
       s.inclusive -= s.exclusive - median;
       s.exclusive = median;
@@ -137,7 +153,12 @@ SampleSums SumsOf(const RegionTally& tally, const EventPrices& prices, double ns
     before = &s;
   }
   const double sigmas = SigmasFor(kept.size());
-  for (auto& [around, part] : sums.around) part.variance *= sigmas * sigmas;
+  for (auto& [around, part] : sums.around) {
+    part.variance *= sigmas * sigmas;
+    // Where few were seen, three sigma of a Poisson distribution are many more.
+    if (part.interrupted != 0)
+      part.surplus *= 1 + 3 / std::sqrt(part.interrupted) + 4 / part.interrupted;
+  }
   sums.inclusive.variance *= sigmas * sigmas;
   return sums;
 }
@@ -172,7 +193,8 @@ struct Account {
     const double doubt =
         std::sqrt(in.variance + out.variance) + in.linear + out.linear + timed_doubt;
     return {value, std::clamp(value - doubt - out.surplus, 0.0, value),
-            std::max(value, std::min(value + doubt + in.surplus, std::max(0.0, timed) + room))};
+            std::max(value, std::min(value + doubt + in.surplus,
+                                     std::max(0.0, timed) + timed_doubt + room))};
   }
 };
 
@@ -232,13 +254,13 @@ class Estimator {
   }
   /// What recording cost within each region's own time; never more than all of it.
   void ChargeCosts() {
-    const double sparse = SparsePart();
+    sparse_ = SparsePart();
     for (std::size_t r = 0; r < accounts_.size(); ++r) {
       const RegionTally& t = visitor_.regions()[r];
       const auto timed = static_cast<double>(t.timed_visits * prices_.timed_inner +
                                              t.timed_children * prices_.TimedOuter());
       const auto all = static_cast<double>(t.exclusive);
-      const double cost = (timed * sparse + static_cast<double>(t.other_cost)) / kPriceUnit;
+      const double cost = (timed * sparse_ + static_cast<double>(t.other_cost)) / kPriceUnit;
       accounts_[r].cost = std::min(cost, all);
       accounts_[r].timed = all - accounts_[r].cost;
       total_ += accounts_[r].timed;
@@ -279,13 +301,16 @@ class Estimator {
     if (!t.samples.empty() || t.pending == 0 || t.timed_visits == 0) return;
     const double mean = static_cast<double>(t.exclusive) / static_cast<double>(t.timed_visits);
     const double ticks = std::min(total_, mean * static_cast<double>(t.pending));
-    Add(accounts_[q].in, {ticks, 0, ticks, 0, 0});
+    Add(accounts_[q].in, {ticks, 0, ticks, 0, 0, 0});
     accounts_[q].room += total_;
   }
-  double TimedDoubt(std::size_t r) const {
-    return std::min(accounts_[r].cost, accounts_[r].timed) * kTimedDoubt;
+  double TimedDoubt(std::uint64_t visits) const {
+    return static_cast<double>(visits * prices_.clock_read) / kPriceUnit * kReadingsDoubt * sparse_;
   }
-  Bounded ExclusiveOf(std::size_t r) const { return accounts_[r].Exclusive(TimedDoubt(r)); }
+  Bounded ExclusiveOf(std::size_t r) const {
+    const RegionTally& t = visitor_.regions()[r];
+    return accounts_[r].Exclusive(TimedDoubt(t.timed_visits + t.timed_children));
+  }
   Bounded InclusiveOf(std::size_t r) const {
     const RegionTally& t = visitor_.regions()[r];
     const Bounded exclusive = ExclusiveOf(r);
@@ -294,8 +319,7 @@ class Estimator {
     const double timed = std::max(0.0, static_cast<double>(t.inclusive) - cost);
     const double value =
         std::clamp(timed + part.ticks, exclusive.value, std::max(exclusive.value, total_));
-    const double doubt =
-        std::sqrt(part.variance) + part.linear + kTimedDoubt * std::min(cost, timed);
+    const double doubt = std::sqrt(part.variance) + part.linear + TimedDoubt(t.timed_visits);
     const double most = std::max(value, total_);
     if (t.recursive) return {value, exclusive.low, most};
     return {value, std::clamp(value - doubt, exclusive.low, value),
@@ -305,6 +329,7 @@ class Estimator {
   const EstimateVisitor& visitor_;
   const EventPrices& prices_;
   double ns_per_tick_;
+  double sparse_ = 1;
   double total_ = 0;  // of the thread, without what recording cost
   std::vector<Account> accounts_;
   std::vector<SampleSums> sums_;

@@ -19,8 +19,8 @@ bool IsJump(RecordKind kind) {
 EventPrices EventPrices::Of(const Stream& stream) {
   if (!stream.calibration) return {};
   const Calibration& c = *stream.calibration;
-  return {c.timed_visit,   c.timed_inner,    c.sampled_visit,
-          c.sampled_inner, c.no_clock_visit, c.counted_visit};
+  return {c.timed_visit,    c.timed_inner,   c.sampled_visit, c.sampled_inner,
+          c.no_clock_visit, c.counted_visit, c.clock_read};
 }
 
 EstimateVisitor::EstimateVisitor(std::uint32_t region_count, std::uint64_t begin, std::uint64_t end,
@@ -100,8 +100,8 @@ EstimateVisitor::Hot EstimateVisitor::EnterCounted(Hot hot, const EventWord* rec
   }
   const bool is_sample = r.purpose == CountedPurpose::kSample;
   if (is_sample) {
-    open_samples_.push_back(
-        {Depth(hot) + 1, 1 + r.visits + region->pending, 0, 0, region->open != 0, counts});
+    open_samples_.push_back({Depth(hot) + 1, 1 + r.visits + region->pending, 0, 0, 0, chunks_,
+                             region->open != 0, counts});
     region->pending = 0;
   } else {
     if (counts) region->pending += 1 + r.visits;
@@ -118,6 +118,7 @@ void EstimateVisitor::TellSample(const Hot& hot, std::uint64_t ticks, std::uint6
   if (f->kind != FrameKind::kSample || open_samples_.empty()) return;
   open_samples_.back().inside += ticks;
   open_samples_.back().inside_cost += outer;
+  ++open_samples_.back().inside_visits;
 }
 
 /// Leaves a frame that is a sample, or lies inside of one; the time is known.
@@ -134,14 +135,18 @@ EstimateVisitor::Hot EstimateVisitor::LeaveOther(Hot hot, std::uint64_t now) {
   }
   if (frame.kind == FrameKind::kSample) {
     const OpenSample& open = open_samples_.back();
-    if (open.counts) {
+    if (open.chunk != chunks_) {
+      // It holds the change of a chunk, which takes as long as thousands of visits.
+      if (open.counts) frame.region->pending += open.visits;
+    } else if (open.counts) {
       const auto spent = static_cast<double>(now - frame.enter);
       const auto price = [](std::uint64_t cost) { return static_cast<double>(cost) / kPriceUnit; };
       const double inner = price(prices_.sampled_inner);
       frame.region->samples.push_back(
           {IndexOf(frame.charged), open.nested, static_cast<double>(open.visits),
            spent - inner - price(hot.cost - frame.cost),
-           spent - inner - static_cast<double>(open.inside) - price(open.inside_cost)});
+           spent - inner - static_cast<double>(open.inside) - price(open.inside_cost),
+           static_cast<double>(open.inside_visits)});
     }
     open_samples_.pop_back();
   }

@@ -29,6 +29,7 @@ struct EventPrices {
   std::uint64_t sampled_inner = 0;
   std::uint64_t no_clock = 0;
   std::uint64_t counted = 0;
+  std::uint64_t clock_read = 0;
 
   static EventPrices Of(const Stream& stream);
   std::uint64_t TimedOuter() const { return timed - std::min(timed, timed_inner); }
@@ -43,6 +44,7 @@ struct VisitSample {
   double visits = 1;
   double inclusive = 0;
   double exclusive = 0;
+  double inside = 0;  // visits that were recorded directly inside
 };
 
 /// What a location has of one region.
@@ -166,7 +168,11 @@ class EstimateVisitor {
   EstimateVisitor(const EstimateVisitor&) = delete;
   EstimateVisitor& operator=(const EstimateVisitor&) = delete;
 
-  Hot Begin() const { return hot_; }
+  /// Each chunk is a scan of its own.
+  Hot Begin() {
+    ++chunks_;
+    return hot_;
+  }
   void End(const Hot& hot) { hot_ = hot; }
   /// Ends the frames that are still open. `counts`: visits without events since the last samples.
   void Finish(std::uint64_t ticks, std::span<const VisitCount> counts, std::uint32_t thread);
@@ -187,6 +193,8 @@ class EstimateVisitor {
     std::uint64_t visits;
     std::uint64_t inside;       // ticks of what was recorded directly inside
     std::uint64_t inside_cost;  // 1/256 ticks, of those events outside of their own time
+    std::uint64_t inside_visits;
+    std::uint64_t chunk;
     bool nested;
     bool counts;  // lies in the selected span
   };
@@ -224,6 +232,7 @@ class EstimateVisitor {
   std::vector<OpenSample> open_samples_;  // outermost first
   MpiCollector* collector_;
   std::uint64_t unclocked_events_ = 0;
+  std::uint64_t chunks_ = 0;
   std::uint64_t leaves_without_enter_ = 0;
   std::uint64_t enters_without_leave_ = 0;
   std::vector<ModeStep> steps_;

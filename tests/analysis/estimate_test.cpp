@@ -250,7 +250,7 @@ const std::vector<Program>& Programs() {
            m.Visit(kInner, [&] { m.Work(50 + i / 100); });
          });
        }},
-      {"timed inside of counted", {kOuter}, 0.2, [](Machine& m) {
+      {"timed inside of counted", {kOuter}, 0.5, [](Machine& m) {
          Times(20000, [&](int) {
            m.Work(20);
            m.Visit(kOuter, [&] {

@@ -118,7 +118,7 @@ REGION uint64_t Tree(uint64_t x, int depth) {
   return x + 1;
 }
 REGION uint64_t Recursion(uint64_t x, long n) {
-  for (long i = 0; i < n; i += 1973) { /* visits of Tree(x, 15) */
+  for (long i = 0; i < n; i += 1973) { /* about the visits of Tree(x, 15) */
     x = Tree(x, 15);
     WORK(kRecursion, 2000);
   }
