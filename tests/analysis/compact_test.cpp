@@ -160,6 +160,7 @@ StreamWriter SomeStream(bool ends) {
   s.NewChunk(1000);
   s.Enter(1, 1000);
   for (std::uint64_t i = 1; i < 10000; ++i) {
+    if (i % 500 == 0) s.NewChunk(1000 + 20 * i);
     s.Enter(2, 1000 + 20 * i);
     s.Unclocked(2, true);
     if (i % 100 == 0) s.Append(Mark{0, 1000 + 20 * i, 1, 0});
@@ -252,6 +253,7 @@ TEST(Compact, DamageInOneChunkLosesThatChunk) {
   for (std::size_t at = kFirstCompactedByte; at + sizeof(ChunkHeader) <= bytes.size();) {
     ChunkHeader h;
     std::memcpy(&h, &bytes[at], sizeof(h));
+    ASSERT_EQ(h.magic, kChunkMagic);
     if (h.kind == ChunkKind::kCompacted) chunks.push_back(at);
     at += h.bytes;
   }

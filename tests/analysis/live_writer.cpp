@@ -16,7 +16,7 @@ using stipple_test::Object;
 constexpr const char* kNames[] = {"r0", "r1", "r2", "r3", "r4", "r5", "r6"};
 constexpr unsigned kRegions = 7;
 constexpr std::uint64_t kVisitsOfCounter = 8;
-constexpr std::uint64_t kVisitsOfFunction = 50000;
+constexpr std::uint64_t kVisitsOfFunction = 5000;
 
 /// A function that nobody has seen: its line is new.
 void VisitNew() {
