@@ -146,7 +146,8 @@ std::vector<std::uint64_t> EverythingIn(const std::string& archive) {
       all.push_back(e->record == nullptr ? e->region * 2 + (e->leave ? 1 : 0) : *e->record);
     }
   }
-  for (const Problem& p : trace.Health().problems()) {
+  const TraceHealth health = trace.Health();
+  for (const Problem& p : health.problems()) {
     all.push_back(static_cast<std::uint64_t>(p.defect));
     all.push_back(p.count);
   }
