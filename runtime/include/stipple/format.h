@@ -24,7 +24,7 @@ inline constexpr std::uint32_t kGranuleBytes = 16 * 1024;
 /// Features that a reader must know to read a stream at all; a set bit it does not know makes it
 /// refuse.
 enum class Feature : std::uint64_t {
-  kCompacted = 1,      // chunks stand behind each other, those of events are coded: `stipple compact`
+  kCompacted = 1,  // chunks stand behind each other, those of events are coded: `stipple compact`
   kStackSwitches = 2,  // set when the first StackSwitch is written
 };
 
