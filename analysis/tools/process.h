@@ -14,8 +14,9 @@ namespace stipple {
 std::optional<std::string> OutputOf(const std::vector<std::string>& command);
 
 /// Runs a command to its end with this process's files, and passes on the signals that this process
-/// is sent; `ignored`, if it is not 0, does nothing to the command until it asks for it. Returns its exit status, 128 + n for signal n, 127 when there is no such program, 126
-/// when it cannot be run.
+/// is sent; `ignored`, if it is not 0, does nothing to the command until it asks for it. Returns
+/// its exit status, 128 + n for signal n, 127 when there is no such program, 126 when it cannot be
+/// run.
 int RunToEnd(const std::vector<std::string>& command, int ignored = 0);
 
 /// From now on becomes true when this process is told to end: by SIGINT, SIGTERM or SIGHUP.

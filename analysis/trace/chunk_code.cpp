@@ -63,16 +63,17 @@ void Append(std::string& to, const void* data, std::size_t bytes) {
 
 }  // namespace
 
-void CallModel::Begin(std::size_t words) {
+CallModel CallMemory::Begin(std::size_t words) {
   if (frames_.size() < words + 1) frames_.resize(words + 1);
   frames_[0] = {0, 0};
-  depth_ = 0;
-  guesses_.assign(std::size_t{1} << (32 - kGuessShift), 0);
+  guesses_.assign(CallModel::kPlaces, 0);
+  return {frames_.data(), guesses_.data()};
 }
 
 struct ChunkCoder::State {
   ZSTD_CCtx* zstd = ZSTD_createCCtx();
-  CallModel model;
+  CallMemory memory;
+  CallModel model = memory.Begin(0);
   std::uint64_t now = 0;
   std::uint64_t events = 0;
   std::string operations;
@@ -86,7 +87,7 @@ struct ChunkCoder::State {
   ~State() { ZSTD_freeCCtx(zstd); }
 
   void Begin(std::size_t words) {
-    model.Begin(words);
+    model = memory.Begin(words);
     now = events = 0;
     operations.clear();
     distances.clear();
@@ -212,7 +213,7 @@ CodedChunk ChunkCoder::Code(std::span<const EventWord> words) {
 
 struct ChunkDecoder::State {
   ZSTD_DCtx* zstd = ZSTD_createDCtx();
-  CallModel model;
+  CallMemory memory;
   std::vector<char> content;
   std::vector<std::uint32_t> table;
   // What is left of each column.
@@ -255,7 +256,6 @@ struct ChunkDecoder::State {
     distances = operations_end = operations + c.operations;
     regions = distances_end = distances + c.distances;
     regions_end = regions + c.regions;
-    model.Begin(words);
     return true;
   }
 
@@ -276,7 +276,7 @@ struct ChunkDecoder::State {
   }
 
   /// An operation without an event; the words it made, 0: damaged.
-  std::uint64_t Other(Operation operation, EventWord* to, std::uint64_t room, std::uint64_t& now) {
+  std::uint64_t Other(Operation operation, EventWord* to, std::uint64_t room, std::uint64_t now) {
     *to = 0;
     if (operation == Operation::kZero) return 1;
     if (operation > Operation::kLiteral || wide == wide_end) return 0;
@@ -287,8 +287,7 @@ struct ChunkDecoder::State {
     std::memcpy(to, wide, words * sizeof(EventWord));
     wide += words * sizeof(EventWord);
     if (operation == Operation::kLiteral) return 1;
-    if (HasTicks(*to)) now = to[1] += now;
-    if (IsEnter(*to)) model.Enter(EnteredBy(to));
+    if (HasTicks(*to)) to[1] += now;
     return words;
   }
 };
@@ -306,8 +305,11 @@ bool ChunkDecoder::Decode(std::span<const std::byte> frame, std::span<EventWord>
   std::uint64_t now = 0;
   EventWord* to = words.data();
   EventWord* const end = to + words.size();
+  CallModel model = s.memory.Begin(words.size());
   const char* distance = s.distances;
-  for (const char* at = s.operations; at != s.operations_end; ++at) {
+  const char* const distances_end = s.distances_end;
+  const char* const operations_end = s.operations_end;
+  for (const char* at = s.operations; at != operations_end; ++at) {
     const auto byte = static_cast<unsigned char>(*at);
     const auto operation = static_cast<Operation>(byte >> kOperationShift);
     const std::uint32_t length = byte & kLengthMask;
@@ -315,28 +317,33 @@ bool ChunkDecoder::Decode(std::span<const std::byte> frame, std::span<EventWord>
     if (operation >= Operation::kZero) [[unlikely]] {
       const std::uint64_t made = s.Other(operation, to, static_cast<std::uint64_t>(end - to), now);
       if (made == 0) return false;
+      if (operation == Operation::kRecord && HasTicks(*to)) now = to[1];
+      if (operation == Operation::kRecord && IsEnter(*to)) model.Enter(EnteredBy(to));
       to += made;
       continue;
     }
-    if (length > static_cast<std::size_t>(s.distances_end - distance)) return false;
+    if (length > static_cast<std::size_t>(distances_end - distance)) return false;
     std::uint64_t more = 0;
     std::memcpy(&more, distance, sizeof(more));
     distance += length;
     now += more & kMasks[length];
-    std::uint32_t region = 0;
     const bool leave = operation == Operation::kLeaveTop || operation == Operation::kLeave;
-    if (leave) {
-      region = s.model.top();
-      if (operation == Operation::kLeave ? !s.Region(region) : s.model.depth() == 0) return false;
-      s.model.Leave(region);
+    std::uint32_t region = 0;
+    if (operation >= Operation::kLeave) [[unlikely]] {
+      if (!s.Region(region)) return false;
+      if (leave) {
+        model.Leave(region);
+      } else {
+        model.Guess() = region;
+        model.Enter(region);
+      }
     } else {
-      std::uint32_t& guess = s.model.Guess();
-      region = guess;
-      if (operation == Operation::kEnter && !s.Region(region)) return false;
-      guess = region;
-      s.model.Enter(region);
+      if (leave && model.depth() == 0) [[unlikely]]
+        return false;
+      region = model.Step(leave);
     }
-    *to++ = MakeEvent(length == 0 ? 0 : now & kTimeMask, leave, RegionId{region});
+    const std::uint64_t time = now & (0 - static_cast<std::uint64_t>(length != 0));
+    *to++ = MakeEvent(time, leave, RegionId{region});
   }
   std::fill(to, end, 0);
   return true;

@@ -25,31 +25,56 @@
 
 namespace stipple {
 
-/// Functions that are open, each with its last child, and what was entered where last time.
+/// Functions that are open, each with its last child, and what was entered where last time. A light
+/// hand on the memory of CallMemory, so that a loop can keep it in registers.
 class CallModel {
  public:
-  void Begin(std::size_t words);
+  struct Frame {
+    std::uint32_t region;
+    std::uint32_t last_child;
+  };
+  CallModel(Frame* frames, std::uint32_t* guesses) : frames_(frames), guesses_(guesses) {}
+
   std::size_t depth() const { return depth_; }
   std::uint32_t top() const { return frames_[depth_].region; }
   /// Of the next function to be entered.
-  std::uint32_t& Guess() {
-    const Frame& f = frames_[depth_];
-    return guesses_[(f.region * 0x9E3779B1U + f.last_child * 0x85EBCA6BU) >> kGuessShift];
-  }
+  std::uint32_t& Guess() const { return guesses_[Place(frames_[depth_])]; }
   void Enter(std::uint32_t region) { frames_[++depth_] = {region, 0}; }
   void Leave(std::uint32_t region) {
     if (depth_ != 0) --depth_;
     frames_[depth_].last_child = region;
   }
+  /// Leaves the top, which there is, or enters what was guessed; its region. Without a branch, for
+  /// nobody can foretell which of the two comes.
+  std::uint32_t Step(bool leave) {
+    const Frame now = frames_[depth_];
+    const std::uint32_t leaves = 0 - static_cast<std::uint32_t>(leave);
+    const std::uint32_t guess = guesses_[Place(now)];
+    const std::uint32_t region = (now.region & leaves) | (guess & ~leaves);
+    depth_ += 1 - 2 * static_cast<std::size_t>(leave);
+    Frame& next = frames_[depth_];
+    next = {(next.region & leaves) | (region & ~leaves), region & leaves};
+    return region;
+  }
+
+  static constexpr std::size_t kPlaces = 4096;
 
  private:
-  static constexpr int kGuessShift = 20;
-  struct Frame {
-    std::uint32_t region;
-    std::uint32_t last_child;
-  };
-  std::vector<Frame> frames_;  // [0]: outside of all
+  static std::uint32_t Place(const Frame& f) {
+    return (f.region * 0x9E3779B1U + f.last_child * 0x85EBCA6BU) >> 20;
+  }
+  Frame* frames_;  // [0]: outside of all
+  std::uint32_t* guesses_;
   std::size_t depth_ = 0;
+};
+
+class CallMemory {
+ public:
+  /// A model that knows nothing yet, for so many words.
+  CallModel Begin(std::size_t words);
+
+ private:
+  std::vector<CallModel::Frame> frames_;
   std::vector<std::uint32_t> guesses_;
 };
 

@@ -152,10 +152,20 @@ std::vector<std::size_t> PlacesOf(Bytes file) {
   return places;
 }
 
-/// Chunks of one thread, by sequence, of equal ones the first in the file; up to the first gap.
-/// The last one is copied.
+/// The chunk with a copy of what it holds now; false: it is gone.
+bool CopyChunk(Stream& stream, const LiveChunk& live, Chunk& chunk) {
+  std::vector<EventWord> words;
+  chunk = ChunkAt(stream.file.bytes(), live.offset, live.header);
+  if (!CopyLive(stream.file.bytes(), live, words)) return false;
+  stream.copies.push_back(std::move(words));
+  chunk.begin = stream.copies.back().data();
+  chunk.end = chunk.begin + stream.copies.back().size();
+  return true;
+}
+
+/// Chunks of one thread, by sequence, of equal ones the first in the file; up to the first gap. The
+/// last one is copied. False: it went on too fast.
 bool TakeThread(Stream& stream, std::vector<LiveChunk>& chunks, FoundChunks& found) {
-  const Bytes file = stream.file.bytes();
   std::ranges::sort(chunks, {},
                     [](const LiveChunk& c) { return std::pair(c.header.sequence, c.offset); });
   std::size_t last = 0;  // first of those with the highest sequence before a gap
@@ -164,19 +174,20 @@ bool TakeThread(Stream& stream, std::vector<LiveChunk>& chunks, FoundChunks& fou
     if (step > 1) chunks.resize(i);
     if (step == 1) last = i;
   }
-  for (std::size_t i = 0; i < last; ++i)
-    Add(found, ChunkAt(file, chunks[i].offset, chunks[i].header), ChunkKind::kEvents);
-  for (std::size_t i = last; i < chunks.size(); ++i) {
-    std::vector<EventWord> words;
-    Chunk chunk = ChunkAt(file, chunks[i].offset, chunks[i].header);
-    if (!CopyLive(file, chunks[i], words)) continue;
-    stream.copies.push_back(std::move(words));
-    chunk.begin = stream.copies.back().data();
-    chunk.end = chunk.begin + stream.copies.back().size();
-    Add(found, chunk, ChunkKind::kEvents);
-    return true;
+  std::vector<Chunk> taken;  // the last one first
+  Chunk chunk;
+  for (std::size_t i = last; i < chunks.size() && taken.empty(); ++i)
+    if (CopyChunk(stream, chunks[i], chunk)) taken.push_back(chunk);
+  const bool whole = !taken.empty();
+  // Of a thread that has lost its first chunks the others can be dropped, too, at any moment.
+  const bool drops = chunks.front().header.sequence != 0;
+  for (std::size_t i = last; i-- > 0;) {
+    chunk = ChunkAt(stream.file.bytes(), chunks[i].offset, chunks[i].header);
+    if (drops && !CopyChunk(stream, chunks[i], chunk)) break;
+    taken.push_back(chunk);
   }
-  return false;
+  for (auto c = taken.rbegin(); c != taken.rend(); ++c) Add(found, *c, ChunkKind::kEvents);
+  return whole;
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ done
 "$stipple" compact none.stipple 2>err; [ $? = 2 ] || fail "compact of nothing"
 
 # Killed at any moment.
-record recursion.c 0 22
+record recursion.c 0 20
 text raw.stipple before
 before=$(bytes raw.stipple)
 for round in $(seq 20); do
@@ -63,7 +63,7 @@ after=$(bytes again.stipple)
 [ $((after * 2)) -lt "$before" ] || fail "$before bytes became $after"
 
 # After a run; the status is the command's, and the same events are there.
-"$stipple" run --clock exact -o run.stipple -- ./recursion 22 >out 2>err || fail "run: exit $?"
+"$stipple" run --clock exact -o run.stipple -- ./recursion 20 >out 2>err || fail "run: exit $?"
 [ $(($(bytes run.stipple) * 2)) -lt "$before" ] || fail "a run was not compacted"
 "$stipple" print --canonical run.stipple >after
 "$stipple" print --canonical raw.stipple | cmp - after || fail "a run's events differ"

@@ -146,7 +146,8 @@ std::vector<std::uint64_t> EverythingIn(const std::string& archive) {
       all.push_back(e->record == nullptr ? e->region * 2 + (e->leave ? 1 : 0) : *e->record);
     }
   }
-  for (const Problem& p : trace.Health().problems()) {
+  const TraceHealth health = trace.Health();
+  for (const Problem& p : health.problems()) {
     all.push_back(static_cast<std::uint64_t>(p.defect));
     all.push_back(p.count);
   }
@@ -160,6 +161,7 @@ StreamWriter SomeStream(bool ends) {
   s.NewChunk(1000);
   s.Enter(1, 1000);
   for (std::uint64_t i = 1; i < 10000; ++i) {
+    if (i % 500 == 0) s.NewChunk(1000 + 20 * i);
     s.Enter(2, 1000 + 20 * i);
     s.Unclocked(2, true);
     if (i % 100 == 0) s.Append(Mark{0, 1000 + 20 * i, 1, 0});
@@ -252,6 +254,7 @@ TEST(Compact, DamageInOneChunkLosesThatChunk) {
   for (std::size_t at = kFirstCompactedByte; at + sizeof(ChunkHeader) <= bytes.size();) {
     ChunkHeader h;
     std::memcpy(&h, &bytes[at], sizeof(h));
+    ASSERT_EQ(h.magic, kChunkMagic);
     if (h.kind == ChunkKind::kCompacted) chunks.push_back(at);
     at += h.bytes;
   }

@@ -94,7 +94,7 @@ int ReadWhileItGrows(int most) {
   while (std::filesystem::is_empty(archive.path())) usleep(1000);
   std::vector<std::uint64_t> last(2);
   int readings = 0;
-  while (readings < most && last[0] < 300'000) {
+  while (readings < most && last[0] < 50'000) {
     const std::vector<std::uint64_t> visits = ReadOnce(archive.path());
     ++readings;
     for (std::size_t t = 0; t < 2; ++t) {

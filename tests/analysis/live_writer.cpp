@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The traced program of live_test.cpp: two threads that record known events until they are killed.
+// The traced program of live_test.cpp: two threads that record known events and live until they are
+// killed.
 // Visit n is of region n mod 7; a counter says n every eight visits; now and then there is a new
 // function, which is visited at once.
+#include <unistd.h>
+
 #include <thread>
 
 #include "stipple/user.h"
@@ -16,7 +19,9 @@ using stipple_test::Object;
 constexpr const char* kNames[] = {"r0", "r1", "r2", "r3", "r4", "r5", "r6"};
 constexpr unsigned kRegions = 7;
 constexpr std::uint64_t kVisitsOfCounter = 8;
-constexpr std::uint64_t kVisitsOfFunction = 50000;
+constexpr std::uint64_t kVisitsOfFunction = 5000;
+constexpr std::uint64_t kVisitsOfBurst = 16384;
+constexpr std::uint64_t kMostVisits = std::uint64_t{1} << 21;
 
 /// A function that nobody has seen: its line is new.
 void VisitNew() {
@@ -40,6 +45,9 @@ void Count(const Object<kRegions>& object, bool defines) {
     Leave(object.dso, Enter(object.dso, object.descriptors[n % kRegions]));
     if (n % kVisitsOfCounter == 0) stipple_counter(&visits, static_cast<double>(n));
     if (defines && n % kVisitsOfFunction == 0) VisitNew();
+    // Disks are finite: bursts of several chunks with rests between.
+    if (n % kVisitsOfBurst == 0) usleep(5000);
+    while (n == kMostVisits) pause();
   }
 }
 
