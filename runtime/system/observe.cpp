@@ -13,6 +13,8 @@
 namespace stipple::system {
 namespace {
 
+constexpr char kSwitches[] = "switches";
+
 /// Each thing is probed where it is needed; the first thread's answer is the process's.
 void BeginThread(std::uint32_t index, std::uint32_t tid) {
   KernelThread* thread = NewKernelThread(index, tid);
@@ -20,9 +22,8 @@ void BeginThread(std::uint32_t index, std::uint32_t tid) {
   const Allowed allowed(thread);
   if (wanted.switches) {
     const int error = OpenRing(*thread);
-    const bool is_first = thread->older == nullptr;
-    if (is_first || error == 0) SayAvailable("switches", error);
-    if (!is_first && error != 0) SayAvailable("switches of every thread", error);
+    SayAvailable(kSwitches, error);
+    if (error != 0 && IsAvailable(kSwitches)) SayAvailable("switches of every thread", error);
     SayAvailable("hardware counters", OpenCounters(*thread));
     SayAvailable("page faults", 0);
     Draining(*thread, NoteOwnCounts);
