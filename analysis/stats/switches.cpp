@@ -48,7 +48,8 @@ std::optional<std::int64_t> GrowthOf(const Trace& trace, const KernelAccount& ac
     if (c.time_ns <= selection.end_ns) last = std::max(last, c.value);
   }
   if (!first) return std::nullopt;
-  return static_cast<std::int64_t>(std::clamp(last - *first, 0.0, 9e15));
+  const double growth = last - *first;
+  return growth > 0 && growth < 9e15 ? static_cast<std::int64_t>(growth) : 0;
 }
 
 Cell CellOf(std::optional<std::int64_t> count) { return count ? Cell(*count) : Cell(); }

@@ -114,8 +114,8 @@ void OnCall(int, siginfo_t* info, void* pointer) {
     Pass(SYS_tgkill, Pass(SYS_getpid), Pass(SYS_gettid), SIGSYS);
     return;
   }
-  // The selector stays at BLOCK: calls made here pass anyhow, and a signal handler of the program that
-  // comes in between is seen like any other code.
+  // The selector stays at BLOCK: calls made here pass anyhow, and a signal handler of the program
+  // that comes in between is seen like any other code.
   greg_t* registers = context.uc_mcontext.gregs;
   const long number = info->si_syscall;
   if (number == SYS_rt_sigreturn) {
