@@ -74,6 +74,16 @@ if recorded raw "all system calls"; then
   [[ $(table raw syscalls | grep ^getppid | cut -d, -f2) == 8 ]] || fail "raw calls: $(table raw syscalls)"
 fi
 
+# As nobody, where the programs can be reached: what perf_event_paranoid allows is recorded.
+nobody=(setpriv --reuid=65534 --regid=65534 --clear-groups)
+if [[ $(id -u) == 0 ]] && "${nobody[@]}" test -x "$stipple" -a -x "$events" 2>/dev/null; then
+  chmod 777 "$work"
+  record sleep --switches --syscalls all -- "${nobody[@]}"
+  if (($(cat /proc/sys/kernel/perf_event_paranoid 2>/dev/null || echo 3) <= 2)) && recorded preempted switches; then
+    recorded sleep switches || fail "switches are not recorded as nobody"
+  fi
+fi
+
 # Refused, and without anything asked for.
 record sleep --switches --syscalls io -- "$deny"
 recorded sleep switches && fail "switches are recorded without perf_event_open"
