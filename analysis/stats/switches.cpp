@@ -48,7 +48,16 @@ std::optional<std::int64_t> GrowthOf(const Trace& trace, const KernelAccount& ac
     if (c.time_ns <= selection.end_ns) last = std::max(last, c.value);
   }
   if (!first) return std::nullopt;
-  return static_cast<std::int64_t>(std::clamp(last - *first, 0.0, 9e15));
+  const double growth = last - *first;
+  return growth > 0 && growth < 9e15 ? static_cast<std::int64_t>(growth) : 0;
+}
+
+/// Whether the kernel told of this thread's switches: the memory for rings is limited.
+bool HasSwitches(const Trace& trace, const Location& l, const KernelAccount& account) {
+  return HasRecorded(trace, l, "switches") &&
+         std::ranges::none_of(account.counts, [&trace](const KernelCount& c) {
+           return trace.names()[c.name].text == "switches refused";
+         });
 }
 
 Cell CellOf(std::optional<std::int64_t> count) { return count ? Cell(*count) : Cell(); }
@@ -63,7 +72,7 @@ std::vector<Cell> RowFor(const Trace& trace, const Location& l, const Selection&
   std::vector<Cell> row =
       RowOf(std::int64_t{l.rank}, std::int64_t{l.process}, std::int64_t{l.thread});
   const auto add = [&row](Cell cell) { row.push_back(std::move(cell)); };
-  if (HasRecorded(trace, l, "switches")) {
+  if (HasSwitches(trace, l, account)) {
     const Switches s = SwitchesOf(account, selection);
     add(static_cast<std::int64_t>(s.blocked + s.preempted));
     add(static_cast<std::int64_t>(s.blocked));

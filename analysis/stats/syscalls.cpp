@@ -57,7 +57,8 @@ class CallVisitor {
   void Record(const EventWord* word, std::uint64_t ticks) {
     if (KindOf(*word) != RecordKind::kSystemCall) return;
     const auto r = RecordAt<SystemCall>(word);
-    const std::int64_t enter_ns = trace_.TimeNs(location_, std::min(r.enter_ticks, ticks));
+    const std::uint64_t enter = std::max(r.enter_ticks, location_.first_ticks);
+    const std::int64_t enter_ns = trace_.TimeNs(location_, std::min(enter, ticks));
     if (!selection_.HasTime(enter_ns)) return;
     const std::int64_t ns = trace_.TimeNs(location_, ticks) - enter_ns;
     CallTotals& t = totals_[{r.number, r.name}];

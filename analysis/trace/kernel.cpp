@@ -51,6 +51,7 @@ std::uint64_t RawClock::Ticks(std::uint64_t raw_ns) const {
   const auto whole = static_cast<std::int64_t>(std::llround(ticks));
   const std::uint64_t result = before.ticks + static_cast<std::uint64_t>(whole);
   if (whole < 0 && result > before.ticks) return 0;
+  if (whole > 0 && result < before.ticks) return kNoTickLimit;
   return result;
 }
 
@@ -81,7 +82,8 @@ KernelAccount ReadKernel(const Trace& trace, const Location& location) {
   const Process& process = trace.ProcessOf(location);
   const RawClock clock(*process.stream, trace.NsPerTick(location));
   const auto time = [&](std::uint64_t raw_ns) {
-    return trace.TimeNs(location, clock.Ticks(raw_ns));
+    constexpr std::int64_t kMost = std::int64_t{1} << 61;  // differences of damage stay numbers
+    return std::clamp(trace.TimeNs(location, clock.Ticks(raw_ns)), -kMost, kMost);
   };
   KernelAccount account;
   ScanCounts counts;

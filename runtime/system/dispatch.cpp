@@ -114,15 +114,16 @@ void OnCall(int, siginfo_t* info, void* pointer) {
     Pass(SYS_tgkill, Pass(SYS_getpid), Pass(SYS_gettid), SIGSYS);
     return;
   }
-  thread->selector = kAllow;
+  // The selector stays at BLOCK: calls made here pass anyhow, and a signal handler of the program
+  // that comes in between is seen like any other code.
   greg_t* registers = context.uc_mcontext.gregs;
   const long number = info->si_syscall;
   if (number == SYS_rt_sigreturn) {
-    thread->selector = kBlock;
     stipple_pass_return_from(reinterpret_cast<void*>(registers[REG_RSP]));
   }
   if (SharesMemory(number, registers[REG_RDI])) {
     constexpr greg_t kInstructionBytes = 2;
+    thread->selector = kAllow;
     registers[REG_RIP] -= kInstructionBytes;
     registers[REG_RAX] = number;
     return;
@@ -135,7 +136,6 @@ void OnCall(int, siginfo_t* info, void* pointer) {
   if (stipple_recording())
     RecordCall(static_cast<std::uint32_t>(number), 0, enter_ticks, result,
                reinterpret_cast<const std::uint64_t*>(arguments), kParameters);
-  if (thread->dispatched) thread->selector = kBlock;
 }
 
 /// Where the core's code lies.

@@ -13,6 +13,21 @@
 namespace stipple::system {
 namespace {
 
+constexpr char kSwitches[] = "switches";
+
+/// A count of a thread that is about the recording itself. The caller drains.
+void NoteOwn(KernelThread& thread, const char* name, std::uint64_t value) {
+  Counter record{};
+  record.ticks = ReadClockNs(CLOCK_MONOTONIC_RAW);
+  record.name = stipple_define_name(name, "");
+  record.value = static_cast<double>(value);
+  if (record.name != 0) AppendKernel(thread, record);
+}
+
+void NoteLost(KernelThread& thread) {
+  if (thread.lost != 0) NoteOwn(thread, "switches lost", thread.lost);
+}
+
 /// Each thing is probed where it is needed; the first thread's answer is the process's.
 void BeginThread(std::uint32_t index, std::uint32_t tid) {
   KernelThread* thread = NewKernelThread(index, tid);
@@ -20,26 +35,17 @@ void BeginThread(std::uint32_t index, std::uint32_t tid) {
   const Allowed allowed(thread);
   if (wanted.switches) {
     const int error = OpenRing(*thread);
-    const bool is_first = thread->older == nullptr;
-    if (is_first || error == 0) SayAvailable("switches", error);
-    if (!is_first && error != 0) SayAvailable("switches of every thread", error);
+    SayAvailable(kSwitches, error);
+    if (error != 0 && IsAvailable(kSwitches)) SayAvailable("switches of every thread", error);
     SayAvailable("hardware counters", OpenCounters(*thread));
     SayAvailable("page faults", 0);
-    Draining(*thread, NoteOwnCounts);
+    Draining(*thread, [error](KernelThread& own) {
+      NoteOwnCounts(own);
+      if (error != 0) NoteOwn(own, "switches refused", static_cast<std::uint64_t>(error));
+    });
   }
   if (wanted.calls != Calls::kNone) SayAvailable("system calls", 0);
   if (wanted.calls == Calls::kAll) SayAvailable("all system calls", Arm(*thread));
-}
-
-void NoteLost(KernelThread& thread) {
-  static constinit std::uint32_t name = 0;
-  if (thread.lost == 0) return;
-  if (name == 0) name = stipple_define_name("switches lost", "");
-  Counter record{};
-  record.ticks = ReadClockNs(CLOCK_MONOTONIC_RAW);
-  record.name = name;
-  record.value = static_cast<double>(thread.lost);
-  AppendKernel(thread, record);
 }
 
 void TakeChunk() {

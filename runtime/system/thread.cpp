@@ -18,6 +18,7 @@ struct KernelProcess {
   KernelThread* spare;
   std::size_t spare_count;
   const char* said[kMostThings];
+  int errors[kMostThings];
 };
 constinit std::atomic<KernelProcess*> process{nullptr};
 
@@ -88,12 +89,11 @@ void SayAvailable(const char* what, int error) {
   {
     const SignalBlock signals_blocked;
     Holding holding(known->lock);
-    for (const char*& entry : known->said) {
-      if (entry == what) return;
-      if (entry != nullptr) continue;
-      entry = what;
-      break;
-    }
+    std::size_t i = 0;
+    while (i < kMostThings && known->said[i] != nullptr && known->said[i] != what) ++i;
+    if (i == kMostThings || known->said[i] == what) return;
+    known->said[i] = what;
+    known->errors[i] = error;
   }
   Availability record{};
   record.available = error == 0 ? 1 : 0;
@@ -101,6 +101,13 @@ void SayAvailable(const char* what, int error) {
   record.what_bytes = static_cast<std::uint32_t>(TextBytes(what));
   stipple_define(&record, static_cast<std::uint8_t>(Availability::kKind), sizeof record, what,
                  record.what_bytes);
+}
+
+bool IsAvailable(const char* what) {
+  const KernelProcess* known = process.load(std::memory_order_acquire);
+  for (std::size_t i = 0; known != nullptr && i < kMostThings; ++i)
+    if (known->said[i] == what) return known->errors[i] == 0;
+  return false;
 }
 
 void AppendKernel(KernelThread& thread, const void* record, RecordKind kind, std::size_t bytes) {

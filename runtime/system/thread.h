@@ -60,6 +60,8 @@ KernelThread* Threads();
 
 /// Says once per process what is recorded; `error` 0: it is.
 void SayAvailable(const char* what, int error);
+/// Whether that was said with 0. `what` is the very same text.
+bool IsAvailable(const char* what);
 
 /// Appends a record of the kernel's to the thread's chunk, or counts it as lost. The caller drains.
 void AppendKernel(KernelThread& thread, const void* record, RecordKind kind, std::size_t bytes);

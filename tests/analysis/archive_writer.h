@@ -58,7 +58,8 @@ class StreamWriter {
                         double ticks_per_ns = 1)
       : ticks_per_ns_(ticks_per_ns),
         definitions_(ChunkKind::kDefinitions, 0, ticks_per_ns),
-        events_{ChunkWriter(ChunkKind::kEvents, 0, ticks_per_ns)} {
+        events_{ChunkWriter(ChunkKind::kEvents, 0, ticks_per_ns)},
+        kernel_(ChunkKind::kKernel, 0, ticks_per_ns) {
     header.magic = kFileMagic;
     header.version = header.minimum_reader_version = kFormatVersion;
     header.pid = pid;
@@ -118,6 +119,12 @@ class StreamWriter {
     record.header = MakeHeader(Record::kKind, sizeof(Record) / 8, true);
     events_.back().Add(&record, sizeof(Record), last_ = record.ticks);
   }
+  /// What the kernel told of the first thread; the record's times are nanoseconds.
+  template <class Record>
+  void Kernel(Record record) {
+    record.header = MakeHeader(Record::kKind, sizeof(Record) / 8, true);
+    kernel_.Add(&record, sizeof(Record), header.start_ticks);
+  }
   void NewChunk(std::uint64_t ticks) { events_.back().Begin(last_ = ticks); }
   /// What follows belongs to a new thread.
   void NewThread() {
@@ -134,6 +141,7 @@ class StreamWriter {
     };
     add(definitions_);
     for (const ChunkWriter& writer : events_) add(writer);
+    add(kernel_);
     return bytes;
   }
 
@@ -153,6 +161,7 @@ class StreamWriter {
   std::uint64_t last_ = 0;  // where a chunk begins whose first word has no time
   ChunkWriter definitions_;
   std::vector<ChunkWriter> events_;
+  ChunkWriter kernel_;
 };
 
 /// A directory that is gone at the end of the test.

@@ -12,7 +12,7 @@ fail() { echo "FAILED: $*" >&2; exit 1; }
 
 "$cmake" --install "$build" --prefix "$prefix" >"$work/log" || { cat "$work/log"; fail "install"; }
 for file in bin/stipple bin/raytracer include/stipple/abi.h include/stipple/format.h include/stipple/user.h include/stipple/stipple.f90 \
-  lib/stipple/libstipple.so lib/stipple/libstipple.a lib/stipple/libstipple-mpi.so lib/stipple/libstipple-views.so \
+  lib/stipple/libstipple.so lib/stipple/libstipple.a lib/stipple/libstipple-mpi.so lib/stipple/libstipple-system.so lib/stipple/libstipple-views.so \
   lib/cmake/stipple/stippleConfig.cmake lib/pkgconfig/stipple.pc bin/stipple-cc bin/stipple-c++ bin/stipple-fc \
   bin/stipple-mpicc bin/stipple-mpicxx share/doc/stipple/plugin-options.md share/doc/stipple/stipple-run.md; do
   [ -f "$prefix/$file" ] || fail "$file is not installed"

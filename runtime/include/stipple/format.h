@@ -59,9 +59,9 @@ static_assert(sizeof(FileHeader) == 688);
 enum class ChunkKind : std::uint32_t {
   kEvents = 1,       // of one thread, in the order of the slots
   kDefinitions = 2,  // of the process: definitions, clock readings, losses, the end; never recycled
-  kKernel = 3,  // of one thread, what the kernel tells of it: ContextSwitch, Counter; their times
+  kKernel = 4,  // of one thread, what the kernel tells of it: ContextSwitch, Counter; their times
                 // are nanoseconds of CLOCK_MONOTONIC_RAW
-  kCompacted = 4,  // kEvents, coded; only in a stream with Feature::kCompacted
+  kCompacted = 3,  // kEvents, coded; only in a stream with Feature::kCompacted
 };
 
 /// First bytes of a chunk.
