@@ -46,7 +46,7 @@ class TreeWriter {
       });
     }
     for (const auto& row : table.rows)
-      if (Depth(row) == 1) whole_ += std::get<double>(row[inclusive_]);
+      if (Depth(row) == 1 && !IsSamples(row)) whole_ += std::get<double>(row[inclusive_]);
   }
 
   std::string Text() {
@@ -69,6 +69,11 @@ class TreeWriter {
   static std::size_t Depth(const Row& row) {
     return std::get<std::vector<std::string>>(row.front()).size();
   }
+  /// Beside events samples are a tree of their own.
+  static bool IsSamples(const Row& row) { return NameOf(row) == kSamplesPath; }
+  static const std::string& NameOf(const Row& row) {
+    return std::get<std::vector<std::string>>(row.front()).back();
+  }
   Line LineOf(const Row& row) const {
     Line line{std::get<double>(row[inclusive_]), std::get<double>(row[exclusive_]), {}, {}};
     for (std::size_t i = 0; i < kCounts.size(); ++i) {
@@ -87,9 +92,10 @@ class TreeWriter {
     const Row& row = table_.rows[at];
     const std::size_t depth = Depth(row);
     EndRests(depth);
+    if (depth == 1 && IsSamples(row)) whole_ = std::get<double>(row[inclusive_]);
     const Line line = LineOf(row);
     if (Matters(line.inclusive_s)) {
-      AddLine(line, depth, ShortName(std::get<std::vector<std::string>>(row.front()).back()));
+      AddLine(line, depth, ShortName(NameOf(row)));
       return at + 1;
     }
     if (rests_.size() <= depth) rests_.resize(depth + 1);

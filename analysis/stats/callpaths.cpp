@@ -295,7 +295,7 @@ Table CallPathsTable(const CallPaths& paths) {
   std::vector<std::string> root;
   if (paths.has_events) {
     const Cell none;
-    root.emplace_back("(samples)");
+    root.emplace_back(kSamplesPath);
     table.rows.push_back(
         RowOf(root, none, paths.sampled_ns * 1e-9, 0.0, none, none, CountCell(paths.sample_count)));
   }

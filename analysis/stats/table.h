@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -39,6 +40,9 @@ enum class TableShape {
   kTree,    // as kRows; the first column is a path of names, each row before those below it, and
             // "inclusive_s" what it counts for
 };
+
+/// Below it stand the samples of a tree that has events, too.
+inline constexpr std::string_view kSamplesPath = "(samples)";
 
 /// A statistic over one archive (or a span of it).
 struct Table {

@@ -158,12 +158,12 @@ TableAnswer SystemCallsAnswer(const Analysis& analysis, const Selection& selecti
 
 constexpr std::array kTables = {
     TableEntry{"profile", Profile, "time and calls per region, most exclusive time first", true},
-    TableEntry{"callpaths", CallPaths, "time, calls and messages per chain of calls, a tree"},
     TableEntry{"states", States, "user, system, message and idle time of each rank"},
     TableEntry{"messages", Messages, "how many messages each rank sent to each (sender = row)"},
     TableEntry{"volume", Volume, "how many bytes each rank sent to each (sender = row)"},
     TableEntry{"waits", Waits, "who waited for whom, why, and what the late rank was doing"},
     TableEntry{"imbalance", Imbalance, "how unevenly the ranks compute, what it costs and why"},
+    TableEntry{"callpaths", CallPaths, "time, calls and messages per chain of calls, a tree"},
     TableEntry{"counters", Counters, "values of the program's own counters over time"},
     TableEntry{"channels", Channels, "messages between threads, and who waited for whom"},
     TableEntry{"overhead", Overhead, "what recording each region cost, and time without it"},

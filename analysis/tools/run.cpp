@@ -220,13 +220,18 @@ std::vector<std::string> Prepare(const RunOptions& options, const std::string& p
     }
   };
   set_or_unset("STIPPLE_FILTER", options.filter.empty() ? "" : fs::absolute(options.filter));
-  set_or_unset("STIPPLE_SAMPLE", options.sample_hz == 0 ? "" : std::to_string(options.sample_hz));
+  // A launcher is told of it as something for its ranks alone: it is not to be sampled itself.
+  const std::string rate = std::to_string(options.sample_hz);
+  unsetenv("STIPPLE_SAMPLE");
+  if (options.sample_hz != 0) variables.push_back("STIPPLE_SAMPLE=" + rate);
   set_or_unset("STIPPLE_PAUSED", options.paused ? "1" : "");
   set_or_unset("STIPPLE_MAX_BYTES", options.max_bytes);
   set_or_unset("STIPPLE_SWITCHES", options.switches ? "1" : "");
   set_or_unset("STIPPLE_SYSCALLS", options.syscalls == "none" ? "" : options.syscalls);
   std::vector<std::string> command = options.command;
   if (list == nullptr) command = WithExports(command, variables, preload, IsOpenMpi);
+  if (options.sample_hz != 0 && list == nullptr && command == options.command)
+    setenv("STIPPLE_SAMPLE", rate.c_str(), 1);
   setenv("LD_PRELOAD", all.c_str(), 1);
   setenv("STIPPLE_ARCHIVE", fs::absolute(options.archive).c_str(), 1);
   setenv("STIPPLE_CLOCK", options.clock.c_str(), 1);

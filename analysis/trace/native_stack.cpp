@@ -131,8 +131,8 @@ std::vector<CrashedThread> CrashesOf(const Trace& trace) {
     if (finder.found != nullptr)
       crashes.push_back({&l, RecordAt<Crash>(finder.found), FramesOf(finder.found)});
   }
-  std::ranges::stable_partition(crashes,
-                                [](const CrashedThread& t) { return t.crash.signal != 0; });
+  std::stable_partition(crashes.begin(), crashes.end(),
+                        [](const CrashedThread& t) { return t.crash.signal != 0; });
   return crashes;
 }
 

@@ -77,6 +77,8 @@ class SymbolFile {
     }
     std::free(scopes);
     place.linkage_name = name;
+    // "exp@@GLIBC_2.29": the version says nothing about where time went.
+    place.linkage_name.resize(std::min(place.linkage_name.size(), place.linkage_name.find('@')));
     found.push_back(std::move(place));
     return found;
   }

@@ -110,6 +110,35 @@ void FollowFramePointers(const ucontext_t& context, NativeStack& stack) {
   }
 }
 
+/// Whether the 16 bytes of code around `address` (8 before it) are the end of an event's call.
+bool ReturnsFromEvent(const unsigned char* around) {
+  return around[3] == 0xe8 && around[8] == 0x48 && around[9] == 0x83 && around[10] == 0xec &&
+         around[11] == 0x80;
+}
+
+/// Around the call of an event's routine the stack pointer is 128 bytes lower than the unwind table
+/// says (plugin/event_code.cpp), and a walk from there would go astray: an event that was
+/// interrupted is taken back to its function first.
+void LeaveEvent(gregset_t& registers) {
+  constexpr long kRedZone = 128;
+  std::uintptr_t code[2];
+  const auto* around = reinterpret_cast<const unsigned char*>(code);
+  const auto address = static_cast<std::uintptr_t>(registers[REG_RIP]);
+  if (ReadPair(address - 8, code)) {
+    const bool before = around[4] == 0x48 && around[5] == 0x83 && around[6] == 0xc4 &&
+                        around[7] == 0x80 && around[8] == 0xe8;
+    if (before || ReturnsFromEvent(around)) {
+      registers[REG_RSP] += kRedZone;
+      return;
+    }
+  }
+  std::uintptr_t top[2];  // in the routine: the return address
+  if (!ReadPair(static_cast<std::uintptr_t>(registers[REG_RSP]), top)) return;
+  if (top[0] < 4096 || !ReadPair(top[0] - 8, code) || !ReturnsFromEvent(around)) return;
+  registers[REG_RIP] = static_cast<greg_t>(top[0]);
+  registers[REG_RSP] += kRedZone + static_cast<long>(sizeof top[0]);
+}
+
 /// Drops the frames before `address`: those of the signal's handler.
 bool DropUntil(std::uintptr_t address, std::uintptr_t* frames, std::size_t& count) {
   std::size_t first = 0;
@@ -179,7 +208,11 @@ void PrepareUnwinding() {
 }
 
 void ReadStack(ucontext_t* context, bool quick, NativeStack& stack) {
-  const auto address = static_cast<std::uintptr_t>(context->uc_mcontext.gregs[REG_RIP]);
+  gregset_t& registers = context->uc_mcontext.gregs;
+  const greg_t interrupted_at = registers[REG_RIP];
+  const greg_t stack_at = registers[REG_RSP];
+  LeaveEvent(registers);  // the walk begins with what stands in the signal's frame
+  const auto address = static_cast<std::uintptr_t>(registers[REG_RIP]);
   stack.count = 1;
   stack.cut = 0;
   stack.frames[0] = address;
@@ -204,6 +237,8 @@ void ReadStack(ucontext_t* context, bool quick, NativeStack& stack) {
     stack.frames[0] = address;
     FollowFramePointers(*context, stack);
   }
+  registers[REG_RIP] = interrupted_at;
+  registers[REG_RSP] = stack_at;
   Encode(stack);
 }
 
