@@ -104,6 +104,20 @@ TEST(Style, NothingThatClang14CannotCompile) {
   }
 }
 
+// lint_headers relies on it.
+TEST(Style, ASourceIncludesItsOwnHeaderFirst) {
+  for (const std::string& file : FilesEndingIn({".cpp"})) {
+    const fs::path header = fs::path(file).replace_extension(".h");
+    if (!fs::exists(kRoot / header)) continue;
+    const std::vector<std::string> lines = Lines(file);
+    const auto first = std::ranges::find_if(
+        lines, [](const std::string& line) { return line.starts_with("#include"); });
+    ASSERT_NE(first, lines.end()) << file;
+    EXPECT_NE(first->find(header.filename().string() + '"'), std::string::npos)
+        << file << " begins with " << *first;
+  }
+}
+
 TEST(Style, HeadersImportNoNames) {
   for (const std::string& file : FilesEndingIn({".h"})) {
     for (const std::string& line : Lines(file))
