@@ -197,7 +197,7 @@ const std::vector<Program>& Programs() {
   static const std::vector<Program> programs = {
       {"a short leaf between work",
        {kInner},
-       0.2,
+       0.5,
        [](Machine& m) {
          Times(20000, [&](int) {
            m.Work(50);
@@ -206,7 +206,7 @@ const std::vector<Program>& Programs() {
        }},
       {"short in short",
        {kOuter, kInner},
-       0.2,
+       0.5,
        [](Machine& m) {
          Times(20000, [&](int) {
            m.Work(30);
@@ -219,7 +219,7 @@ const std::vector<Program>& Programs() {
        }},
       {"a leaf of two callers at different cost",
        {kInner},
-       0.2,
+       0.5,
        [](Machine& m) {
          Times(500, [&](int) {
            m.Visit(kOuter, [&] {
@@ -234,7 +234,7 @@ const std::vector<Program>& Programs() {
        }},
       {"two sorts of visits",
        {kInner},
-       0.3,
+       0.5,
        [](Machine& m) {
          Times(30000, [&](int) {
            m.Work(100);
@@ -243,7 +243,7 @@ const std::vector<Program>& Programs() {
        }},
       {"visits that grow",
        {kInner},
-       0.2,
+       0.5,
        [](Machine& m) {
          Times(20000, [&](int i) {
            m.Work(100);
