@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "analysis/report/left_out.h"
@@ -86,23 +85,6 @@ Json CrashesJson(const Trace& trace) {
                        {"stack", StackLines(trace, trace.ProcessOf(*t.location), t.frames)}});
   }
   return crashes;
-}
-
-/// What was recorded, and what could not be and why.
-std::string RecordedText(const Trace& trace) {
-  std::vector<std::string> lines;
-  for (const Process& p : trace.processes())
-    for (const AvailabilityDefinition& a : p.stream->availability) {
-      const std::string line =
-          fmt::format("recorded   {}: {}\n", a.what,
-                      a.available    ? "yes"
-                      : a.error == 0 ? "no"
-                                     : fmt::format("no, {}", std::strerror(a.error)));
-      if (std::ranges::find(lines, line) == lines.end()) lines.push_back(line);
-    }
-  std::string text;
-  for (const std::string& line : lines) text += line;
-  return text;
 }
 
 /// Each crashed thread and its stack.
@@ -214,7 +196,6 @@ std::string InfoText(const Analysis& info) {
     text += fmt::format("filter     {}: {} of {} left out\n", filter.path,
                         FormatCount(static_cast<std::int64_t>(filter.filtered)),
                         FormatCount(filter.functions, "function"));
-  text += RecordedText(trace);
   text += CrashesText(trace);
   text += '\n';
   Table table{"locations",
