@@ -144,8 +144,8 @@ std::string InfoJson(const Analysis& info) {
                      {"recorded", RecordedJson(trace)},
                      {"not_recorded", NotRecordedJson(trace)},
                      {"jobs", JobsJson(trace)},
-                     {"running", info.health.CountOf(Defect::kStillRunning)},
                      {"crashes", CrashesJson(trace)},
+                     {"running", info.health.CountOf(Defect::kStillRunning)},
                      {"problems", problems}};
   return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

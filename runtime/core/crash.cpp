@@ -9,6 +9,7 @@
 #include "runtime/core/crash.h"
 
 #include <fcntl.h>
+#include <stdlib.h>
 #include <time.h>
 
 #include "runtime/core/clock.h"
@@ -173,7 +174,10 @@ void LetCrashGoFirst(Process& process) {
 }
 
 __attribute__((constructor(102))) void Connect() {
-  if (ReadSettings().archive == nullptr || !PrepareStandIns()) return;
+  // Settings are read once: not here, if the program may still set them itself.
+  if (getenv("STIPPLE_ARCHIVE") == nullptr || ReadSettings().archive == nullptr ||
+      !PrepareStandIns())
+    return;
   hooks.process_begun = StandInForCrashes;
   hooks.recording = OpenUnwinder;
   hooks.thread_begun = AddSignalStack;

@@ -209,6 +209,7 @@ void FollowRecord(RecordKind kind) {
 }
 
 __attribute__((constructor(103))) void BeginSampling() {
+  if (getenv("STIPPLE_SAMPLE") == nullptr) return;
   const Settings& settings = ReadSettings();
   if (settings.archive == nullptr || settings.sample_hz == 0) return;
   period_ns = 1'000'000'000 / settings.sample_hz;

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
 ! A function with a second entry, procedures inside a procedure, recursion.
-module shapes
+module figures
   implicit none
 contains
   function area(width) result(value)
@@ -32,7 +32,7 @@ contains
 end module
 
 program main
-  use shapes
+  use figures
   implicit none
   real :: sum
   sum = area(1.5)
