@@ -142,7 +142,7 @@ stipple~u_1:
 constexpr std::string_view kFinishRoutine = R"(
 	movl	%r10d, %eax
 	ret
-.Lstipple_cold~u:
+.Lstipple_cold~u:~count
 	xorl	%edx, %edx
 	.byte	0xf3, 0x48, 0x0f, 0x1e, 0xca
 	testq	%rdx, %rdx
@@ -162,6 +162,25 @@ constexpr std::string_view kFinishRoutine = R"(
 	.size	stipple~u_1, . - stipple~u_1
 )";
 
+// In the enter's cold part: a visit that is only counted ends here, unless the slow path has to
+// know of it, which then finds the word as it was.
+constexpr std::string_view kCount = R"(
+	testl	$0x1000000, %r10d
+	je	.Lstipple_ask~u
+	movq	stipple_dso_1+8(%rip), %rax
+	movq	%fs:(%rax), %rdx
+	movq	24(%rdx), %rdx
+	testq	%rdx, %rdx
+	je	.Lstipple_ask~u
+	subl	$1, -0x8000000(%rdx,%r10,8)
+	js	.Lstipple_due~u
+	xorl	%eax, %eax
+	ret
+.Lstipple_due~u:
+	addl	$1, -0x8000000(%rdx,%r10,8)
+.Lstipple_ask~u:)";
+
+static_assert(STIPPLE_COUNT_ONLY == 0x1000000 && offsetof(stipple_control, counts) == 24);
 static_assert(STIPPLE_MODE_MASK == 0xff000000 && STIPPLE_LEAVE == 0x800000);
 static_assert(offsetof(stipple_dso, tp_offset) == 8 && offsetof(stipple_dso, slow) == 16);
 static_assert(offsetof(stipple_control, cur) == 0 && offsetof(stipple_control, end) == 8);
@@ -268,9 +287,12 @@ std::string Joined(std::initializer_list<std::string_view> parts) {
   return text;
 }
 
-/// `mark`: the instruction that makes the slow path's token one of a leave, if it is one.
-std::string Routine(std::string_view name, std::string_view mark_word, std::string_view mark) {
+/// `count`: the enter's counting. `mark`: the instruction that makes the slow path's token one of a
+/// leave, if it is one.
+std::string Routine(std::string_view name, std::string_view mark_word, std::string_view count,
+                    std::string_view mark) {
   std::string text = Joined({kBeginRoutine, kAppend, mark_word, kStore, kFinishRoutine});
+  ReplaceAll(text, "~count", count);
   ReplaceAll(text, "~mark", mark);
   return Template(text, {.begin = "",
                          .end = "",
@@ -305,8 +327,8 @@ std::string LeaveCode(const TemplateSyntax& syntax, Form form) {
 
 const std::string& ObjectCode() {
   static const std::string code =
-      Joined({kBeginObject, Routine("_enter", "", ""),
-              Routine("_leave", kMarkLeave, "orl\t$0x800000, %eax"), kEndObject});
+      Joined({kBeginObject, Routine("_enter", "", kCount, ""),
+              Routine("_leave", kMarkLeave, "", "orl\t$0x800000, %eax"), kEndObject});
   return code;
 }
 

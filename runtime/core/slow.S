@@ -11,7 +11,6 @@
 #include "stipple/abi.h"
 
 	.hidden	stipple_stream
-	.hidden	stipple_counts
 	.hidden	stipple_save_mask
 	.hidden	stipple_save_bytes
 	.hidden	stipple_slow_event
@@ -62,8 +61,9 @@ stipple_slow:
 	 * region and this one bit, so the bit is taken off in the address. */
 	testl	$STIPPLE_COUNT_ONLY, %eax
 	jz	.Lnot_counted
-	movq	stipple_counts@gottpoff(%rip), %rdx
+	movq	stipple_stream@gottpoff(%rip), %rdx
 	movq	%fs:(%rdx), %rdx
+	movq	24(%rdx), %rdx			/* counts */
 	testq	%rdx, %rdx
 	jz	.Lask				/* no counts yet, or a sample is open */
 	subl	$1, -8*STIPPLE_COUNT_ONLY(%rdx,%rax,8)
@@ -193,8 +193,9 @@ stipple_slow:
 	.cfi_restore_state
 	testl	$STIPPLE_LEAVE, %eax
 	jnz	.Lappend
-	movq	stipple_counts@gottpoff(%rip), %rdx
+	movq	stipple_stream@gottpoff(%rip), %rdx
 	movq	%fs:(%rdx), %rdx
+	movq	24(%rdx), %rdx			/* counts */
 	testq	%rdx, %rdx
 	jz	.Lask
 	subl	$1, -8*STIPPLE_NO_CLOCK(%rdx,%rax,8)

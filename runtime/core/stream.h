@@ -11,6 +11,8 @@
 
 namespace stipple {
 
+struct Counts;
+
 /// One thread. Lies in memory that a forked child finds zeroed (tid 0: none of this process).
 struct Thread {
   stipple_control control;  // first: the thread pointer's slot points at it
@@ -28,6 +30,8 @@ struct Thread {
   std::uint64_t last_ticks;  // of the last event
   std::uint32_t steps;
   Thread* next;
+  // sample.h
+  Counts* counts;  // null: none yet
   // budget.h
   std::uint64_t review_ticks;   // of the last review
   std::uint64_t review_cpu_ns;  // of this thread, then
