@@ -188,7 +188,7 @@ constexpr std::string_view kBeginCount = R"(
 	.weak	stipple_count_1
 	.hidden	stipple_count_1
 	.type	stipple_count_1, @function
-	.balign	16
+	.balign	64
 stipple_count_1:
 	.cfi_startproc
 	.cfi_def_cfa	%rsp, 0
