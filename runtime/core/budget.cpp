@@ -293,8 +293,8 @@ void Review(Process& process, Thread& thread, std::uint64_t ticks) {
   Holding holding(process.lock);
   const double passed = TicksSince(process, thread, ticks);
   double counting = 0;
-  if (thread.control.counts != nullptr) {
-    std::uint64_t& visits = CountsOf(thread)->visits_by_samples;
+  if (thread.counts != nullptr) {
+    std::uint64_t& visits = thread.counts->visits_by_samples;
     counting = static_cast<double>(visits) * budget->counted_visit;
     visits = 0;
   }

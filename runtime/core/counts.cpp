@@ -43,26 +43,28 @@ void WriteCounts(Process& process, Counts& counts, std::uint32_t thread) {
 }  // namespace
 
 Counts* MakeCounts(Thread& thread) {
-  if (thread.control.counts == nullptr) {
+  if (thread.counts == nullptr) {
     auto* counts = static_cast<Counts*>(MapWipedMemory(sizeof(Counts)));
     if (counts == nullptr) return nullptr;
     counts->random = thread.index;
-    thread.control.counts = stipple_counts = counts->words;
+    thread.counts = counts;
+    thread.control.counts = counts->words;
   }
-  return CountsOf(thread);
+  return thread.counts;
 }
 
 void EndCounts(Process& process, Thread& thread) {
-  if (thread.control.counts == nullptr) return;
-  Counts* counts = CountsOf(thread);
-  stipple_counts = thread.control.counts = nullptr;
+  Counts* counts = thread.counts;
+  if (counts == nullptr) return;
+  thread.control.counts = nullptr;
+  thread.counts = nullptr;
   WriteCounts(process, *counts, thread.index);
   Syscall(SYS_munmap, Argument(counts), sizeof(Counts));
 }
 
 void WriteVisitCounts(Process& process) {
   for (const Thread* thread = process.threads; thread != nullptr; thread = thread->next)
-    if (thread->control.counts != nullptr) WriteCounts(process, *CountsOf(*thread), thread->index);
+    if (thread->counts != nullptr) WriteCounts(process, *thread->counts, thread->index);
 }
 
 }  // namespace stipple

@@ -8,10 +8,6 @@
 #include "runtime/core/budget.h"
 #include "runtime/core/clock.h"
 
-extern "C" {
-__thread std::uint64_t* stipple_counts = nullptr;
-}
-
 namespace stipple {
 namespace {
 
@@ -40,16 +36,18 @@ std::int32_t NextStride(Counts& counts) {
 }
 
 /// Visits directly inside of a sample come to the slow path, others count as they go.
-void Arm(Counts& counts) {
+void Arm(Thread& thread) {
+  Counts& counts = *thread.counts;
   const std::uint32_t open = counts.open;
   const bool sample = open != 0 && counts.visits[open - 1].purpose == CountedPurpose::kSample;
-  stipple_counts = sample ? nullptr : counts.words;
+  thread.control.counts = sample ? nullptr : counts.words;
 }
 
 /// Closes visits whose frames have ended: a stack pointer is above theirs.
-void CloseAbove(Counts& counts, std::uint64_t stack) {
+void CloseAbove(Thread& thread, std::uint64_t stack) {
+  Counts& counts = *thread.counts;
   while (counts.open != 0 && stack > counts.visits[counts.open - 1].stack) --counts.open;
-  Arm(counts);
+  Arm(thread);
 }
 
 /// The visits to report with a sample; the word begins anew.
@@ -73,7 +71,7 @@ std::uint64_t ReadTicksBetween() {
 
 Thread* CountingThread() {
   auto* thread = reinterpret_cast<Thread*>(stipple_stream);
-  return thread->control.counts != nullptr ? thread : nullptr;
+  return thread->counts != nullptr ? thread : nullptr;
 }
 
 /// A place in the thread's chunk, or null.
@@ -90,10 +88,11 @@ void Store(EventWord* place, EventWord word) {
 
 }  // namespace
 
-Choice Choose(Counts& counts, std::uint32_t region, std::uint64_t stack) {
-  CloseAbove(counts, stack);
+Choice Choose(Thread& thread, std::uint32_t region, std::uint64_t stack) {
+  CloseAbove(thread, stack);
+  Counts& counts = *thread.counts;
   const bool room = counts.open < Counts::kMostOpen;
-  if (room && stipple_counts == nullptr) return Choice::kInside;
+  if (room && thread.control.counts == nullptr) return Choice::kInside;
   std::uint64_t& word = counts.words[region];
   if (LeftIn(word) > 0) return Choice::kCount;
   if (room) return Choice::kSample;
@@ -106,8 +105,9 @@ void Count(Counts& counts, std::uint32_t region, bool event) {
   AddTo(counts.words[region], -1, event ? -1 : 0);
 }
 
-std::uint32_t OpenCounted(Counts& counts, EventWord* place, std::uint32_t region, Choice choice,
+std::uint32_t OpenCounted(Thread& thread, EventWord* place, std::uint32_t region, Choice choice,
                           std::uint64_t stack) {
+  Counts& counts = *thread.counts;
   constexpr std::uint64_t kWords = sizeof(CountedEnter) / sizeof(EventWord);
   auto* record = reinterpret_cast<CountedEnter*>(place);
   Store(place, MakeHeader(CountedEnter::kKind, kWords, false));
@@ -118,24 +118,25 @@ std::uint32_t OpenCounted(Counts& counts, EventWord* place, std::uint32_t region
   counts.open = index + 1;
   std::atomic_signal_fence(std::memory_order_seq_cst);
   counts.visits[index] = {stack, region, record->purpose};
-  Arm(counts);
+  Arm(thread);
   record->ticks = ReadTicksBetween();
   Store(place, MakeHeader(CountedEnter::kKind, kWords, true));
   return region | STIPPLE_SAMPLED | index << STIPPLE_SAMPLED_SHIFT;
 }
 
-void CloseCounted(Counts& counts, std::uint32_t token) {
+void CloseCounted(Thread& thread, std::uint32_t token) {
+  Counts& counts = *thread.counts;
   const std::uint32_t index = token >> STIPPLE_SAMPLED_SHIFT;
   const std::uint32_t region = token & STIPPLE_REGION_MASK;
   if (index >= counts.open || counts.visits[index].region != region) return;
   counts.open = index;
-  Arm(counts);
+  Arm(thread);
 }
 
 void ForgetSamples(std::uint64_t stack) {
   Thread* thread = CountingThread();
   if (thread == nullptr) return;
-  CloseAbove(*CountsOf(*thread), stack);
+  CloseAbove(*thread, stack);
 }
 
 }  // namespace stipple
@@ -148,9 +149,9 @@ std::uint32_t stipple_sample(std::uint32_t token, std::uint64_t stack, std::uint
   if (counted != nullptr) AddTo(counted[region], 1, 0);
   Thread* thread = CountingThread();
   if (thread == nullptr) return kStippleGeneral;
-  Counts& counts = *CountsOf(*thread);
+  Counts& counts = *thread->counts;
   const bool event = (token & STIPPLE_NO_CLOCK) != 0;
-  const Choice choice = Choose(counts, region, stack);
+  const Choice choice = Choose(*thread, region, stack);
   if (choice == Choice::kSample && IsReviewDue(*thread, ReadTicks())) return kStippleGeneral;
   if (choice == Choice::kCount && !event) {
     Count(counts, region, false);
@@ -159,7 +160,7 @@ std::uint32_t stipple_sample(std::uint32_t token, std::uint64_t stack, std::uint
   EventWord* place =
       ReserveHere(*thread, choice == Choice::kCount ? sizeof(EventWord) : sizeof(CountedEnter));
   if (place == nullptr) return kStippleGeneral;
-  if (choice != Choice::kCount) return OpenCounted(counts, place, region, choice, stack);
+  if (choice != Choice::kCount) return OpenCounted(*thread, place, region, choice, stack);
   Count(counts, region, true);
   Store(place, MakeEvent(0, false, RegionId{region}));
   return token;
@@ -170,7 +171,7 @@ std::uint32_t stipple_sample_leave(std::uint32_t token) {
   const std::uint64_t ticks = ReadTicksBetween();
   Thread* thread = CountingThread();
   if (thread == nullptr) return kStippleGeneral;
-  CloseCounted(*CountsOf(*thread), token);
+  CloseCounted(*thread, token);
   EventWord* place = ReserveHere(*thread, sizeof(EventWord));
   if (place == nullptr) return kStippleGeneral;
   Store(place, MakeEvent(ticks, true, RegionId{token & STIPPLE_REGION_MASK}));

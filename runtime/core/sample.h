@@ -10,9 +10,10 @@
 //
 // While a sample is open, visits directly inside it are timed, too, since the exclusive time of the
 // sample would not be known otherwise. The way to notice them costs the others nothing: `counts` of
-// the thread is null meanwhile, which leads to the slow path. Inside such a visit counting goes on
-// as usual, to samples of its own: hence a stack of open ones. An entry whose frame is gone (its
-// visit was left by a jump) is known by a later enter with a stack pointer above it.
+// its control block (abi.h) is null meanwhile, which leads to the slow path. Inside such a visit
+// counting goes on as usual, to samples of its own: hence a stack of open ones. An entry whose
+// frame is gone (its visit was left by a jump) is known by a later enter with a stack pointer above
+// it.
 //
 // A signal handler may come between any two instructions of all this: words are changed by single
 // instructions, and whatever a handler does to the stack is undone when it ends or costs a visit
@@ -48,11 +49,6 @@ struct Counts {
 };
 static_assert(Counts::kMostOpen < 1u << (32 - STIPPLE_SAMPLED_SHIFT));
 
-inline Counts* CountsOf(const Thread& thread) {
-  return reinterpret_cast<Counts*>(reinterpret_cast<char*>(thread.control.counts) -
-                                   offsetof(Counts, words));
-}
-
 /// The thread's counts, made at first use; null without memory.
 Counts* MakeCounts(Thread& thread);
 
@@ -65,17 +61,17 @@ void WriteVisitCounts(Process& process);
 
 /// What becomes of a visit that has not been counted yet.
 enum class Choice { kCount, kSample, kInside };
-Choice Choose(Counts& counts, std::uint32_t region, std::uint64_t stack);
+Choice Choose(Thread& thread, std::uint32_t region, std::uint64_t stack);
 
 /// Counts a visit that writes no event (`event`: one without a time).
 void Count(Counts& counts, std::uint32_t region, bool event);
 
 /// Fills in the CountedEnter at `place` and opens the visit; returns the token for the exits.
-std::uint32_t OpenCounted(Counts& counts, EventWord* place, std::uint32_t region, Choice choice,
+std::uint32_t OpenCounted(Thread& thread, EventWord* place, std::uint32_t region, Choice choice,
                           std::uint64_t stack);
 
 /// Closes the visit with this token if it is still known.
-void CloseCounted(Counts& counts, std::uint32_t token);
+void CloseCounted(Thread& thread, std::uint32_t token);
 
 /// Visits of this thread whose stack pointer lies below `stack` are left by a jump; those on the
 /// whole stack, when it changes to another.
@@ -90,9 +86,6 @@ inline std::int64_t CountIn(std::uint64_t word) {
 }  // namespace stipple
 
 extern "C" {
-/// The words of this thread's counts; null: none yet, or the next visit may be inside of a sample.
-extern __thread std::uint64_t* stipple_counts;
-
 /// In place of a token: take the general way.
 inline constexpr std::uint32_t kStippleGeneral = ~std::uint32_t{0};
 

@@ -3,15 +3,14 @@
  * stipple/abi.h: eax = token, r11 = address to come back to; all registers but eax, rdx, r11 and the
  * flags are kept.
  *
- * Events that are only counted, or written without the clock, are done here in a few instructions.
- * The samples among them save the general registers and call stipple_sample; everything else saves
- * all registers and calls stipple_slow_event. For an unwinder this is a
+ * Events written without the clock are done here in a few instructions. The samples among them, and
+ * what a visit that is only counted cannot do itself, save the general registers and call
+ * stipple_sample; everything else saves all registers and calls stipple_slow_event. For an unwinder this is a
  * function called from where r11 points; its stack pointer there is ours at the jump. The 128 bytes
  * below that may be the interrupted function's red zone. */
 #include "stipple/abi.h"
 
 	.hidden	stipple_stream
-	.hidden	stipple_counts
 	.hidden	stipple_save_mask
 	.hidden	stipple_save_bytes
 	.hidden	stipple_slow_event
@@ -56,19 +55,15 @@ stipple_slow:
 	.cfi_register rip, r11
 	.cfi_remember_state
 
-	/* No endbr64: the jump to here is not tracked.
-	 *
-	 * Count: one less until this thread's next sample of the region (sample.h). The token is the
-	 * region and this one bit, so the bit is taken off in the address. */
+	/* No endbr64: the jump to here is not tracked. */
+	testl	$STIPPLE_NO_CLOCK, %eax
+	jnz	.Lno_clock
+	xorl	%edx, %edx
 	testl	$STIPPLE_COUNT_ONLY, %eax
-	jz	.Lnot_counted
-	movq	stipple_counts@gottpoff(%rip), %rdx
-	movq	%fs:(%rdx), %rdx
-	testq	%rdx, %rdx
-	jz	.Lask				/* no counts yet, or a sample is open */
-	subl	$1, -8*STIPPLE_COUNT_ONLY(%rdx,%rax,8)
-	js	.Ldue
-	xorl	%eax, %eax
+	jnz	.Lask
+	testl	$STIPPLE_SAMPLED, %eax
+	jnz	.Lsample_leave
+	jmp	.Lgeneral
 
 	/* A routine that was called and left by a jump leaves the processor with a prediction too
 	 * many: the program's next return would go there, 7 ns late. Where its return address still
@@ -93,12 +88,6 @@ stipple_slow:
 	leaq	136(%rsp), %rsp
 	.cfi_def_cfa_offset 0
 	notrack jmp	*%r11
-
-.Lnot_counted:
-	testl	$STIPPLE_NO_CLOCK, %eax
-	jnz	.Lno_clock
-	testl	$STIPPLE_SAMPLED, %eax
-	jnz	.Lsample_leave
 
 .Lgeneral:
 	SAVE
@@ -188,15 +177,18 @@ stipple_slow:
 	call	stipple_sample_leave
 	jmp	.Lsampled
 
-	/* Reserve, but do not read the clock; an enter counts down to the next sample, too. */
+	/* Reserve, but do not read the clock. An enter counts down to this thread's next sample of the
+	 * region, too (sample.h). The token of an enter is the region and this one bit, so the bit is
+	 * taken off in the address. */
 .Lno_clock:
 	.cfi_restore_state
 	testl	$STIPPLE_LEAVE, %eax
 	jnz	.Lappend
-	movq	stipple_counts@gottpoff(%rip), %rdx
+	movq	stipple_stream@gottpoff(%rip), %rdx
 	movq	%fs:(%rdx), %rdx
+	movq	24(%rdx), %rdx			/* counts */
 	testq	%rdx, %rdx
-	jz	.Lask
+	jz	.Lask				/* no counts yet, or a sample is open */
 	subl	$1, -8*STIPPLE_NO_CLOCK(%rdx,%rax,8)
 	js	.Ldue
 	subl	$1, -8*STIPPLE_NO_CLOCK+4(%rdx,%rax,8)

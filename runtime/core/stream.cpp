@@ -29,8 +29,8 @@
 
 extern "C" {
 /// Reservations in it always fail: what a thread points at until its first event.
-constinit stipple_control stipple_no_stream{};
-__thread stipple_control* stipple_stream = &stipple_no_stream;
+constinit stipple::Thread stipple_no_stream{};
+__thread stipple_control* stipple_stream = &stipple_no_stream.control;
 /// In the slow path: an event from within would be one of the runtime itself.
 static __thread bool stipple_inside = false;
 }
@@ -59,11 +59,10 @@ class Inside {
   bool again_;
 };
 
-/// The thread that this one's slot points at, or null; a forked child finds it zeroed.
+/// The thread that this one's slot points at, or null: none yet, or a forked child's, zeroed.
 Thread* KnownThread() {
   auto* thread = reinterpret_cast<Thread*>(stipple_stream);
-  if (stipple_stream == &stipple_no_stream || thread->tid == 0) return nullptr;
-  return thread;
+  return thread->tid != 0 ? thread : nullptr;
 }
 
 Thread* SpareThread(Process& process) {
@@ -276,13 +275,13 @@ std::uint32_t EnterDegraded(std::uint32_t token, std::uint64_t stack, std::uint6
     Review(*ThisProcess(), *thread, ticks);
     WriteSteps(*ThisProcess(), *thread);
   }
-  const Choice choice = Choose(*counts, region, stack);
+  const Choice choice = Choose(*thread, region, stack);
   if (choice == Choice::kCount) Count(*counts, region, event);
   if (choice == Choice::kCount && !event) return 0;
   EventWord* place =
       ReserveSlowly(choice == Choice::kCount ? sizeof(EventWord) : sizeof(CountedEnter), ticks);
   if (place == nullptr) return kStippleGeneral;
-  if (choice != Choice::kCount) return OpenCounted(*counts, place, region, choice, stack);
+  if (choice != Choice::kCount) return OpenCounted(*thread, place, region, choice, stack);
   Commit(place, MakeEvent(0, false, RegionId{region}));
   return token;
 }

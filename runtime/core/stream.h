@@ -11,6 +11,8 @@
 
 namespace stipple {
 
+struct Counts;
+
 /// One thread. Lies in memory that a forked child finds zeroed (tid 0: none of this process).
 struct Thread {
   stipple_control control;  // first: the thread pointer's slot points at it
@@ -30,6 +32,8 @@ struct Thread {
   std::uint32_t place;  // ring.h: of the chunk, counted from 1
   RingThread* ring;     // null: none needed
   Thread* next;
+  // sample.h
+  Counts* counts;  // null: none yet
   // budget.h
   std::uint64_t review_ticks;   // of the last review
   std::uint64_t review_cpu_ns;  // of this thread, then

@@ -59,6 +59,7 @@ case $check in
     compile "$apps/recursion.c" app instruction-threshold=1
     record count ./app 20
     expect "count 21891 Fib" events
+    expect "asked 2190 Fib" events
     grep -q enter events && fail "events in spite of STIPPLE_COUNT_ONLY"
     ;;
   toggle) # ids that come and go at any moment leave no enter or leave alone

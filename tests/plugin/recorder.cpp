@@ -3,7 +3,8 @@
 // the real one. Events go to the file STIPPLE_RECORDER_FILE, one a line: process, thread, enter or
 // leave, linkage name. STIPPLE_RECORDER_MODE is a list of words:
 //   direct    every event takes the slow path and is written at once (survives _exit and abort)
-//   count     ids carry STIPPLE_COUNT_ONLY: no events, at the end one line `count N NAME` each
+//   count     ids carry STIPPLE_COUNT_ONLY: no events, at the end one line `count N NAME` each, and
+//             `asked N NAME` for the visits that came to the slow path, at most each tenth
 //   no-clock  ids carry STIPPLE_NO_CLOCK
 //   sparse    the clock is read for one event in eight
 //   toggle    a timer takes the ids away and gives them back while the program runs
@@ -37,7 +38,9 @@ struct Region {
 };
 
 Region regions[kRegions];
-uint64_t visits[kRegions];
+uint64_t visits[kRegions], asked[kRegions];
+uint64_t
+    words[kRegions];  // stipple_control.counts, of all threads: visits counted before they happen
 unsigned region_count = 1;
 Thread threads[kThreads];
 int thread_count;
@@ -84,7 +87,7 @@ Thread& Self() {
                       MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (buffer == MAP_FAILED) abort();
   const auto begin = reinterpret_cast<uint64_t>(buffer);
-  *self = {{begin, direct ? 0 : begin + kBufferBytes, sparse ? uint64_t{0x38} : 0, visits},
+  *self = {{begin, direct ? 0 : begin + kBufferBytes, sparse ? uint64_t{0x38} : 0, words},
            begin,
            process};
   control = &self->control;
@@ -155,9 +158,14 @@ __attribute__((destructor)) void Finish() {
     for (uint64_t at = threads[i].begin; at < threads[i].control.cur; at += 8)
       Print(fd, i, *reinterpret_cast<uint64_t*>(at));
   }
-  for (unsigned id = 1; id < region_count; ++id)
-    if (visits[id] != 0)
-      dprintf(fd, "count %llu %s\n", static_cast<unsigned long long>(visits[id]), regions[id].name);
+  for (unsigned id = 1; id < region_count; ++id) {
+    if (visits[id] == 0) continue;
+    const auto line = [fd, id](const char* what, uint64_t number) {
+      dprintf(fd, "%s %llu %s\n", what, static_cast<unsigned long long>(number), regions[id].name);
+    };
+    line("count", visits[id] - words[id]);
+    line("asked", asked[id]);
+  }
   close(fd);
 }
 
@@ -167,7 +175,10 @@ __attribute__((destructor)) void Finish() {
 extern "C" __attribute__((visibility("hidden"))) uint32_t test_slow_event(uint32_t token) {
   Thread& thread = Self();
   if ((token & STIPPLE_COUNT_ONLY) != 0) {
-    ++visits[token & STIPPLE_REGION_MASK];
+    const uint32_t region = token & STIPPLE_REGION_MASK;
+    ++visits[region];
+    ++asked[region];
+    if (words[region] == 0) visits[region] += words[region] = 9;
     return 0;
   }
   const uint64_t time = (token & STIPPLE_NO_CLOCK) != 0 ? 0 : __builtin_ia32_rdtsc() << 24;

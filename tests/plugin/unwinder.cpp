@@ -18,7 +18,6 @@ std::uint32_t stipple_slow_event(std::uint32_t token);
 constinit stipple_control control{};  // no chunk: always slow
 __thread stipple_control* stipple_stream __attribute__((tls_model("initial-exec"))) = &control;
 // Of modes, which no slot here has.
-__thread std::uint64_t* stipple_counts __attribute__((tls_model("initial-exec"))) = nullptr;
 std::uint32_t stipple_sample(std::uint32_t, std::uint64_t, std::uint64_t*) {
   return ~std::uint32_t{0};
 }

@@ -59,12 +59,25 @@ __attribute__((always_inline)) inline std::uint32_t Event(const stipple_dso& dso
       "movq %%rdx, (%%r11)\n\t"
       "movl %%ecx, %%eax\n\t"
       "jmp 2f\n"
-      "1: leaq 2f(%%rip), %%r11\n\t"
+      "1: movl %[token], %[token]\n\t"  // the upper half, for the address
+      "testl %[counted], %[token]\n\t"
+      "je 4f\n\t"
+      "movq %c[offset](%[dso]), %%rdx\n\t"
+      "movq %%fs:(%%rdx), %%rdx\n\t"
+      "movq 24(%%rdx), %%rdx\n\t"
+      "testq %%rdx, %%rdx\n\t"
+      "je 4f\n\t"
+      "subl $1, -0x8000000(%%rdx,%q[token],8)\n\t"
+      "js 5f\n\t"
+      "xorl %[token], %[token]\n\t"
+      "jmp 2f\n"
+      "5: addl $1, -0x8000000(%%rdx,%q[token],8)\n"
+      "4: leaq 2f(%%rip), %%r11\n\t"
       "jmp *%c[slow](%[dso])\n"
       "2:"
       : [token] "+a"(token)
       : [dso] "r"(&dso), [offset] "i"(__builtin_offsetof(stipple_dso, tp_offset)),
-        [slow] "i"(__builtin_offsetof(stipple_dso, slow))
+        [slow] "i"(__builtin_offsetof(stipple_dso, slow)), [counted] "i"(STIPPLE_COUNT_ONLY)
       : "rcx", "rdx", "r11", "cc", "memory");
   return token;
 }

@@ -64,7 +64,6 @@ std::uint64_t counts[8];
 std::uint64_t slots[8];
 stipple_control control{};
 __thread stipple_control* stipple_stream = &control;
-__thread std::uint64_t* stipple_counts = nullptr;
 
 /// In the place of the runtime's: half of them go on the general way.
 std::uint32_t stipple_sample(std::uint32_t token, std::uint64_t, std::uint64_t*) {
@@ -111,7 +110,7 @@ TEST(Slow, UnwindsAtEveryInstruction) {
   SteppedEvent(dso, 1 | STIPPLE_SAMPLED | STIPPLE_LEAVE);
   EXPECT_EQ(calls, 3);
   EXPECT_EQ(samples, 4);
-  stipple_counts = counts;
+  control.counts = counts;
   counts[1] = 2;
   control.cur = reinterpret_cast<std::uint64_t>(slots);
   control.end = control.cur + sizeof slots;

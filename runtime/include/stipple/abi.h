@@ -14,7 +14,7 @@
  *
  *     token = descriptor.id                    enter hands it to every exit of the same visit
  *     if (token == 0) done                     off, filtered or not registered
- *     if (token & mode bits) slow
+ *     if (token & mode bits) slow              an enter may count by itself; see below
  *     control = *(thread pointer + dso.tp_offset)
  *     slot = xadd(control.cur, 8)              one instruction: no signal handler comes between
  *     if (slot >= control.end) slow
@@ -27,6 +27,14 @@
  * (enter) and every other register as it was, but for rdx, r11 and the flags. Where the code of an
  * event is a routine that the function calls, 128 bytes below its stack pointer, it may also come
  * back by `ret` to the routine's caller, 4 bytes before r11, if the return address is still there.
+ *
+ * A visit that is only counted (STIPPLE_COUNT_ONLY) an enter may count by itself:
+ *
+ *     words = control.counts
+ *     if (words == 0) slow                     the runtime wants to be asked
+ *     if (--low half of words[region] >= 0)    one instruction, no signal handler comes between
+ *       { token = 0; done }                    the exits have nothing to do
+ *     ++low half of words[region]; slow        due: the slow path finds the word as it was
  *
  * A slot holds at most one of the modes STIPPLE_COUNT_ONLY and STIPPLE_NO_CLOCK. Of the visits of
  * such a region the runtime makes one in about a thousand a sample: an enter with a time, whose
@@ -67,7 +75,8 @@ struct stipple_control {
   uint64_t cur;        /* address of the next free slot */
   uint64_t end;        /* first address behind the chunk; 0: always slow */
   uint64_t clock_mask; /* the clock is read when (slot address & clock_mask) == 0 */
-  uint64_t* counts;    /* by region, for the two modes; null until needed. Of the runtime alone */
+  uint64_t* counts;    /* null: every visit of the two modes takes the slow path; else words by region:
+                          the low half counts down, the high half is the runtime's */
 };
 
 /* One shared object or program. */
