@@ -189,7 +189,22 @@ EstimateVisitor::Hot EstimateVisitor::Other(Hot hot, const EventWord* record, st
     const auto r = RecordAt<RegionMode>(record);
     steps_.push_back({r.ticks, r.region, r.mode, r.visits, static_cast<double>(r.mean_ticks)});
   }
+  if (KindOf(*record) == RecordKind::kOpenFrames) BeginOpen(hot, record, ticks);
   return IsJump(KindOf(*record)) ? Jump(hot, record, ticks) : hot;
+}
+
+/// Begins with the frames that were open when the rest of a ring began. They are no calls, and
+/// count from there on.
+void EstimateVisitor::BeginOpen(Hot& hot, const EventWord* record, std::uint64_t ticks) {
+  hot.Charge(ticks);
+  begin_is_known_ = AllOpenKnown(record);
+  points_.Begin(record);
+  for (const std::uint32_t r :
+       OpenRegions(record, static_cast<std::uint32_t>(regions_.size() - 1))) {
+    RegionTally* const region = &regions_[r];
+    hot.Push(region, region, hot.last, FrameKind::kTimed);
+    if (region->is_watched != 0) collector_->Function(r, false, ticks);
+  }
 }
 
 EstimateVisitor::Hot EstimateVisitor::Jump(Hot hot, const EventWord* record, std::uint64_t ticks) {

@@ -183,7 +183,8 @@ class EstimateVisitor {
   const EventPrices& prices() const { return prices_; }
   bool is_sparse() const { return is_sparse_; }
   std::uint64_t unclocked_events() const { return unclocked_events_; }
-  std::uint64_t leaves_without_enter() const { return leaves_without_enter_; }
+  /// None if the rest of a ring began with frames that are not known.
+  std::uint64_t leaves_without_enter() const { return begin_is_known_ ? leaves_without_enter_ : 0; }
   std::uint64_t enters_without_leave() const { return enters_without_leave_; }
 
  private:
@@ -207,6 +208,7 @@ class EstimateVisitor {
   Hot LeaveOther(Hot hot, std::uint64_t now);
   Hot Other(Hot hot, const EventWord* record, std::uint64_t ticks);
   Hot Jump(Hot hot, const EventWord* record, std::uint64_t ticks);
+  void BeginOpen(Hot& hot, const EventWord* record, std::uint64_t ticks);
   void SwitchContext(Hot& hot, std::uint32_t from, std::uint32_t to);
   void PopLeft(Hot& hot, std::uint64_t ticks);
   void DropOther(Hot& hot);
@@ -233,6 +235,7 @@ class EstimateVisitor {
   MpiCollector* collector_;
   std::uint64_t unclocked_events_ = 0;
   std::uint64_t chunks_ = 0;
+  bool begin_is_known_ = true;
   std::uint64_t leaves_without_enter_ = 0;
   std::uint64_t enters_without_leave_ = 0;
   std::vector<ModeStep> steps_;

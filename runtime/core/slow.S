@@ -63,31 +63,6 @@ stipple_slow:
 	jnz	.Lask
 	testl	$STIPPLE_SAMPLED, %eax
 	jnz	.Lsample_leave
-	jmp	.Lgeneral
-
-	/* A routine that was called and left by a jump leaves the processor with a prediction too
-	 * many: the program's next return would go there, 7 ns late. Where its return address still
-	 * stands below the stack pointer (it cannot for code in line) it is used up by returning to
-	 * it: the instruction there is the step back over the red zone. */
-.Lreturn:
-	leaq	-4(%r11), %rdx
-	cmpq	%rdx, -136(%rsp)
-	je	.Lcalled
-	notrack jmp	*%r11
-.Lcalled:
-	leaq	-128(%rsp), %rsp
-	.cfi_def_cfa_offset 128
-	pushq	%rdx				/* again: a signal handler may have changed it */
-	.cfi_def_cfa_offset 136
-	xorl	%edx, %edx
-	rdsspq	%rdx
-	testq	%rdx, %rdx			/* with a shadow stack, the routine has removed it there */
-	jnz	.Lnot_returning
-	ret
-.Lnot_returning:
-	leaq	136(%rsp), %rsp
-	.cfi_def_cfa_offset 0
-	notrack jmp	*%r11
 
 .Lgeneral:
 	SAVE
@@ -138,7 +113,7 @@ stipple_slow:
 	.cfi_register rip, r11
 	leaq	128(%rsp), %rsp
 	.cfi_def_cfa_offset 0
-	jmp	.Lreturn
+	notrack jmp	*%r11
 
 .Lold_processor:
 	.cfi_def_cfa rbp, 144
@@ -210,7 +185,7 @@ stipple_slow:
 	.cfi_def_cfa_offset 128
 	leaq	128(%rsp), %rsp
 	.cfi_def_cfa_offset 0
-	jmp	.Lreturn
+	notrack jmp	*%r11
 .Lno_clock_full:
 	.cfi_def_cfa_offset 136
 	popq	%rcx
