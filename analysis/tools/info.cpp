@@ -82,7 +82,7 @@ Json CrashesJson(const Trace& trace) {
                        {"thread", t.location->thread},
                        {"signal", hit ? Json(SignalName(t.crash.signal)) : Json(nullptr)},
                        {"address", has_address ? Json(t.crash.address) : Json(nullptr)},
-                       {"stack", StackLines(trace, trace.ProcessOf(*t.location), t.frames)}});
+                       {"stack", StackLines(trace, trace.ProcessOf(*t.location), t.Frames())}});
   }
   return crashes;
 }
@@ -95,7 +95,7 @@ std::string CrashesText(const Trace& trace) {
         fmt::format("{}.{}", trace.RankName(t.location->rank), t.location->thread);
     text += fmt::format("\n{:<11}thread {}\n",
                         t.crash.signal != 0 ? SignalName(t.crash.signal) : "meanwhile", thread);
-    for (const std::string& line : StackLines(trace, trace.ProcessOf(*t.location), t.frames))
+    for (const std::string& line : StackLines(trace, trace.ProcessOf(*t.location), t.Frames()))
       text += fmt::format("           {}\n", line);
   }
   return text;

@@ -61,7 +61,7 @@ std::string FaultPlace(const Trace& trace, const Process& process, const Crashed
   std::string first;
   std::string place;
   ForEachFrame(
-      trace, process, thread.frames,
+      trace, process, thread.Frames(),
       [&](const std::vector<FrameName>& names, std::uint64_t word) {
         if (first.empty()) first = PlaceText(names.front(), word);
         if (place.empty() && !PassesFailureOn(names.front()))
@@ -76,12 +76,13 @@ std::string WhoText(const Trace& trace, const Process& process) {
   return fmt::format("{} (pid {})", process.stream->program, process.stream->header.pid);
 }
 
-/// The last crash record of one thread: behind it there is nothing but the end.
+/// The last crash record of one thread: behind it there is nothing but the end. Copied: words of a
+/// compacted chunk are gone after the scan.
 struct CrashFinder {
-  const EventWord* found = nullptr;
+  std::vector<EventWord> found;
   void Function(std::uint32_t, bool, std::uint64_t) {}
   void Record(const EventWord* record, std::uint64_t) {
-    if (KindOf(*record) == RecordKind::kCrash) found = record;
+    if (KindOf(*record) == RecordKind::kCrash) found.assign(record, record + WordsOf(*record));
   }
 };
 
@@ -128,8 +129,9 @@ std::vector<CrashedThread> CrashesOf(const Trace& trace) {
     ScanPosition at;
     at.chunk = l.stream->chunks.size() - 1;
     ScanSome(*l.stream, process.RegionCount(), kNoTickLimit, at, counts, finder);
-    if (finder.found != nullptr)
-      crashes.push_back({&l, RecordAt<Crash>(finder.found), FramesOf(finder.found)});
+    if (finder.found.empty()) continue;
+    const auto crash = RecordAt<Crash>(finder.found.data());
+    crashes.push_back({&l, crash, std::move(finder.found)});
   }
   std::stable_partition(crashes.begin(), crashes.end(),
                         [](const CrashedThread& t) { return t.crash.signal != 0; });

@@ -33,8 +33,10 @@ std::vector<std::string> PathOf(const Trace& trace, const Process& process,
 /// One thread of a process that a signal ended.
 struct CrashedThread {
   const Location* location = nullptr;
-  Crash crash;  // its signal is 0 in the threads that were not hit
-  NativeFrames frames;
+  Crash crash;                    // its signal is 0 in the threads that were not hit
+  std::vector<EventWord> record;  // all of it
+
+  NativeFrames Frames() const { return FramesOf(record.data()); }
 };
 
 /// Threads of crashed processes, those that were hit first.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <random>
 #include <set>
@@ -193,72 +194,76 @@ void Times(int count, const std::function<void(int)>& body) {
   for (int i = 0; i < count; ++i) body(i);
 }
 
-const std::vector<Program>& Programs() {
-  static const std::vector<Program> programs = {
-      {"a short leaf between work",
-       {kInner},
-       0.5,
-       [](Machine& m) {
-         Times(20000, [&](int) {
-           m.Work(50);
-           m.Visit(kInner, [&] { m.Work(100); });
-         });
-       }},
-      {"short in short",
-       {kOuter, kInner},
-       0.5,
-       [](Machine& m) {
-         Times(20000, [&](int) {
-           m.Work(30);
-           m.Visit(kOuter, [&] {
-             m.Work(60);
-             m.Visit(kInner, [&] { m.Work(80); });
-             m.Visit(kInner, [&] { m.Work(40); });
-           });
-         });
-       }},
-      {"a leaf of two callers at different cost",
-       {kInner},
-       0.5,
-       [](Machine& m) {
-         Times(500, [&](int) {
-           m.Visit(kOuter, [&] {
-             Times(40, [&](int) { m.Visit(kInner, [&] { m.Work(150); }); });
-             m.Work(3000);
-           });
-           m.Visit(kOther, [&] {
-             Times(20, [&](int) { m.Visit(kInner, [&] { m.Work(50); }); });
-             m.Work(4000);
-           });
-         });
-       }},
-      {"two sorts of visits",
-       {kInner},
-       0.5,
-       [](Machine& m) {
-         Times(30000, [&](int) {
-           m.Work(100);
-           m.Visit(kInner, [&] { m.Work(m.random() % 8 == 0 ? 600 : 40); });
-         });
-       }},
-      {"visits that grow",
-       {kInner},
-       0.5,
-       [](Machine& m) {
-         Times(20000, [&](int i) {
-           m.Work(100);
-           m.Visit(kInner, [&] { m.Work(50 + i / 100); });
-         });
-       }},
-      {"timed inside of counted", {kOuter}, 0.5, [](Machine& m) {
-         Times(20000, [&](int) {
-           m.Work(20);
-           m.Visit(kOuter, [&] {
-             m.Work(70);
-             m.Visit(kTimed, [&] { m.Work(300); });
-           });
-         });
-       }}};
+std::vector<Program> ProgramsOfEqualVisits() {
+  return {{"a short leaf between work",
+           {kInner},
+           0.5,
+           [](Machine& m) {
+             Times(20000, [&](int) {
+               m.Work(50);
+               m.Visit(kInner, [&] { m.Work(100); });
+             });
+           }},
+          {"short in short",
+           {kOuter, kInner},
+           0.5,
+           [](Machine& m) {
+             Times(20000, [&](int) {
+               m.Work(30);
+               m.Visit(kOuter, [&] {
+                 m.Work(60);
+                 m.Visit(kInner, [&] { m.Work(80); });
+                 m.Visit(kInner, [&] { m.Work(40); });
+               });
+             });
+           }},
+          {"a leaf of two callers at different cost", {kInner}, 0.5, [](Machine& m) {
+             Times(500, [&](int) {
+               m.Visit(kOuter, [&] {
+                 Times(40, [&](int) { m.Visit(kInner, [&] { m.Work(150); }); });
+                 m.Work(3000);
+               });
+               m.Visit(kOther, [&] {
+                 Times(20, [&](int) { m.Visit(kInner, [&] { m.Work(50); }); });
+                 m.Work(4000);
+               });
+             });
+           }}};
+}
+
+std::vector<Program> ProgramsOfUnequalVisits() {
+  return {{"two sorts of visits",
+           {kInner},
+           0.5,
+           [](Machine& m) {
+             Times(30000, [&](int) {
+               m.Work(100);
+               m.Visit(kInner, [&] { m.Work(m.random() % 8 == 0 ? 600 : 40); });
+             });
+           }},
+          {"visits that grow",
+           {kInner},
+           0.5,
+           [](Machine& m) {
+             Times(20000, [&](int i) {
+               m.Work(100);
+               m.Visit(kInner, [&] { m.Work(50 + i / 100); });
+             });
+           }},
+          {"timed inside of counted", {kOuter}, 0.5, [](Machine& m) {
+             Times(20000, [&](int) {
+               m.Work(20);
+               m.Visit(kOuter, [&] {
+                 m.Work(70);
+                 m.Visit(kTimed, [&] { m.Work(300); });
+               });
+             });
+           }}};
+}
+
+std::vector<Program> Programs() {
+  std::vector<Program> programs = ProgramsOfEqualVisits();
+  std::ranges::move(ProgramsOfUnequalVisits(), std::back_inserter(programs));
   return programs;
 }
 
