@@ -37,6 +37,10 @@ TableAnswer CallPaths(const Analysis& analysis, const Selection& selection, bool
   answer.headline = PercentText(best->own.exclusive_ns, tree.nodes().front().inclusive_ns) +
                     " of the time is spent at the end of " + path + ".";
   if (!paths.has_events) answer.headline += " " + SamplesText(paths);
+  if (!analysis.steps.empty())
+    answer.headline +=
+        " Of functions that the budget left without times only timed visits have time here, the "
+        "rest is their callers', and visits that were only counted are missing: see profile.";
   return answer;
 }
 

@@ -50,6 +50,8 @@ std::string ShortName(std::string_view demangled) {
   int angles = 0;
   bool is_operator = false;
   int braces = 0;  // of a lambda, whose parameters belong to its name
+  // Without parameters it is no signature: a program's own region may be called "main phase".
+  const bool has_return_type = demangled.find('(') != std::string_view::npos;
   for (std::size_t i = 0; i < demangled.size(); ++i) {
     const char c = demangled[i];
     const std::size_t operator_bytes = angles == 0 ? OperatorBytes(demangled, i) : 0;
@@ -67,7 +69,7 @@ std::string ShortName(std::string_view demangled) {
       braces += c == '{' ? 1 : c == '}' ? -1 : 0;
       if (c == '(' && braces == 0) break;
       // What stood before a blank was the return type, but for "operator new", "operator<< <char>".
-      if (c == ' ' && braces == 0 && !is_operator) {
+      if (c == ' ' && braces == 0 && !is_operator && has_return_type) {
         name.clear();
       } else if (c != ' ' || braces > 0 || demangled.substr(i + 1, 1) != "<") {
         name += c;

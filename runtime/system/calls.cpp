@@ -190,22 +190,9 @@ Start* TakeStart(void* (*function)(void*), void* argument) {
 }  // namespace
 
 // By its symbol's name, not by libc's declaration of it: those have other types, or attributes that
-// say that a call never comes back by a cancellation.
-#define STIPPLE_CALL(result, returns, symbol, number, parameters, arguments)                \
-  extern "C" __attribute__((visibility("default")))                                         \
-  returns stipple_call_##symbol parameters __asm__(#symbol);                                \
-  returns stipple_call_##symbol parameters {                                                \
-    using Function = returns parameters;                                                    \
-    auto* const real =                                                                      \
-        reinterpret_cast<Function*>(Real(calls[static_cast<int>(CallIndex::k##symbol)]));   \
-    const Visit visit;                                                                      \
-    returns const value = real arguments;                                                   \
-    if (visit.Records())                                                                    \
-      Record(CallIndex::k##symbol, visit, result##_Result(value) STIPPLE_UNPACK arguments); \
-    visit.Leave();                                                                          \
-    return value;                                                                           \
-  }
-#define STIPPLE_PASS(returns, symbol, parameters, arguments)                              \
+// say that a call never comes back by a cancellation. `record` is a statement about `visit` and
+// `value`.
+#define STIPPLE_WRAP(returns, symbol, parameters, arguments, record)                      \
   extern "C" __attribute__((visibility("default")))                                       \
   returns stipple_call_##symbol parameters __asm__(#symbol);                              \
   returns stipple_call_##symbol parameters {                                              \
@@ -214,12 +201,20 @@ Start* TakeStart(void* (*function)(void*), void* argument) {
         reinterpret_cast<Function*>(Real(calls[static_cast<int>(CallIndex::k##symbol)])); \
     const Visit visit;                                                                    \
     returns const value = real arguments;                                                 \
+    record;                                                                               \
     visit.Leave();                                                                        \
     return value;                                                                         \
   }
+#define STIPPLE_CALL(result, returns, symbol, number, parameters, arguments) \
+  STIPPLE_WRAP(returns, symbol, parameters, arguments,                       \
+               if (visit.Records()) Record(CallIndex::k##symbol, visit,      \
+                                           result##_Result(value) STIPPLE_UNPACK arguments))
+#define STIPPLE_PASS(returns, symbol, parameters, arguments) \
+  STIPPLE_WRAP(returns, symbol, parameters, arguments, (void)0)
 #include "runtime/system/calls.def"
 #undef STIPPLE_CALL
 #undef STIPPLE_PASS
+#undef STIPPLE_WRAP
 
 // With the same promise as a STIPPLE_PASS row.
 extern "C" __attribute__((visibility("default"))) int stipple_call_pthread_create(

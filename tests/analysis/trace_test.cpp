@@ -49,6 +49,7 @@ TEST(Demangle, GivesTheNamesThatPeopleWrite) {
 
 TEST(Demangle, ShortNamesLeaveOutWhatTheReaderNeedsNot) {
   EXPECT_EQ(ShortName("main"), "main");
+  EXPECT_EQ(ShortName("main phase"), "main phase");  // a region of user.h
   EXPECT_EQ(ShortName("void a::(anonymous namespace)::F<int>(std::vector<int> const&) const"),
             "a::F<..>");
   EXPECT_EQ(ShortName("std::vector<int, std::allocator<int> >::push_back(int&&)"),
