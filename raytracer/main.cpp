@@ -9,7 +9,7 @@
 #include <fstream>
 
 #include "raytracer/errors.h"
-#include "raytracer/geometry/bvh.h"
+#include "raytracer/geometry/kernel.h"
 #include "raytracer/image/png_file.h"
 #include "raytracer/options.h"
 #include "raytracer/render/marks.h"
@@ -62,20 +62,23 @@ Scene Load(const World& world, const Options& options) {
   return scene;
 }
 
-Bvh Build(const World& world, Scene& scene) {
+template <class Real>
+Model<Real> Build(const World& world, Scene& scene) {
   Mark(Moment::kBuildBegins);
-  return OnAllRanks(world, [&] { return BuildBvh(scene.shapes); });
+  return OnAllRanks(world, [&] { return BuildModel<Real>(std::move(scene.shapes)); });
 }
 
-Rendered RenderScene(const World& world, const Scene& scene, const Bvh& bvh,
+template <class Real>
+Rendered RenderScene(const World& world, const Scene& scene, const Model<Real>& model,
                      const Options& options) {
   const ImageSize image = scene.view.resolution;
   const PartitionChoice choice{RasterOf(image, options.samples), options.tile,
                                static_cast<std::uint32_t>(options.bundle), options.select,
                                static_cast<std::uint64_t>(options.seed)};
-  Sampler sampler(scene, bvh, {static_cast<int>(options.max_depth), options.min_contribution},
-                  image, options.samples);
-  return Render(world, sampler, options.partition, choice);
+  const auto kernel = OnAllRanks(world, [&] { return MakeKernel(options.kernel, model); });
+  const ShadingChoice shading{static_cast<int>(options.max_depth), options.min_contribution};
+  const auto sampler = MakeSampler(scene, model, *kernel, shading, image, options.samples);
+  return Render(world, *sampler, options.partition, choice);
 }
 
 void WriteText(const std::string& text, const std::string& path) {
@@ -111,7 +114,22 @@ void OnRank(const World& world, int rank, Work work) {
   });
 }
 
-void RenderAndReport(const World& world, const Options& options) {
+template <class Real>
+void RenderAndReport(const World& world, Scene& scene, const Options& options, RankReport report) {
+  Stopwatch watch;
+  const Model<Real> model = Build<Real>(world, scene);
+  report.build_s = watch.Lap();
+  const Rendered rendered = RenderScene(world, scene, model, options);
+  report.render_s = watch.Lap();
+  report.counts = rendered.counts;
+  report.messages = rendered.messages;
+  OnRank(world, AssemblingRank(world, options.partition),
+         [&] { WritePictures(rendered.raster, scene.view.resolution, options); });
+  const RunReport run{model.objects.size(), GatherReports(world, report)};
+  OnRank(world, 0, [&] { WriteReport(run, options); });
+}
+
+void LoadAndRender(const World& world, const Options& options) {
   Stopwatch watch;
   RankReport report;
   Scene scene = Load(world, options);
@@ -120,18 +138,11 @@ void RenderAndReport(const World& world, const Options& options) {
     OnRank(world, 0, [&] { WriteNff(scene, options.write_scene); });
     if (world.rank == 0)
       fmt::print("wrote {}: {} objects\n", options.write_scene, scene.shapes.objects.size());
-    return;
+  } else if (options.precision == "float") {
+    RenderAndReport<float>(world, scene, options, report);
+  } else {
+    RenderAndReport<double>(world, scene, options, report);
   }
-  const Bvh bvh = Build(world, scene);
-  report.build_s = watch.Lap();
-  const Rendered rendered = RenderScene(world, scene, bvh, options);
-  report.render_s = watch.Lap();
-  report.counts = rendered.counts;
-  report.messages = rendered.messages;
-  OnRank(world, AssemblingRank(world, options.partition),
-         [&] { WritePictures(rendered.raster, scene.view.resolution, options); });
-  const RunReport run{scene.shapes.objects.size(), GatherReports(world, report)};
-  OnRank(world, 0, [&] { WriteReport(run, options); });
 }
 
 int Run(const World& world, int argc, char** argv) {
@@ -142,7 +153,7 @@ int Run(const World& world, int argc, char** argv) {
   else if (!options.compare.first.empty())
     OnRank(world, 0, [&] { status = PrintComparison(options); });
   else
-    RenderAndReport(world, options);
+    LoadAndRender(world, options);
   MPI_Bcast(&status, 1, MPI_INT, 0, world.comm);
   return status;
 }

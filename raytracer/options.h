@@ -30,6 +30,8 @@ struct Options {
   Samples samples;
   std::int64_t max_depth = 5;
   double min_contribution = 0;
+  std::string precision = "double";
+  std::string kernel = "bvh";
   std::string output;
   std::string cost_map;
   std::string stats;
@@ -77,6 +79,9 @@ inline constexpr OptionSpec kOptions[] = {
      64},
     {"min-contribution", &Options::min_contribution, "C",
      "do not trace rays that change a pixel by less (of 1)", 0, 1},
+    {"precision", &Options::precision, "double|float", "kind of number that rays are computed in"},
+    {"kernel", &Options::kernel, "bvh|scalar|embree",
+     "what finds hits: the own hierarchy, the same without vector instructions, or Embree"},
     {"output", &Options::output, "F.png", "write the picture"},
     {"cost-map", &Options::cost_map, "F.png|F.csv",
      "write what each pixel cost, as grey levels or as a table x,y,work,object,in_shadow,depth"},

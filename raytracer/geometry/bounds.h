@@ -36,7 +36,7 @@ inline double HalfArea(const Bounds& box) {
 /// A ray prepared for box tests: the division is done once, and the sign of each direction tells
 /// which side is near.
 struct SlabRay {
-  explicit SlabRay(const Ray& ray)
+  explicit SlabRay(const Ray<double>& ray)
       : origin(ray.origin),
         inverse{1 / ray.direction.x, 1 / ray.direction.y, 1 / ray.direction.z},
         x_down(std::signbit(ray.direction.x)),

@@ -6,15 +6,17 @@
 #include <array>
 #include <numeric>
 
-#include "raytracer/geometry/bvh.h"
+#include "raytracer/geometry/convert.h"
+#include "raytracer/geometry/model.h"
 
 namespace stipple::raytracer {
 namespace {
 
 constexpr int kBinCount = 16;
 constexpr std::uint32_t kMaxLeafObjects = 8;
-constexpr double kBoxCost = 1.0;        // of one box test, in units of one primitive test
-constexpr int kMaxHeuristicDepth = 72;  // deeper nodes are halved by count: at most 32 levels more
+constexpr double kBoxCost = 1.0;  // of one box test, in units of one primitive test
+constexpr int kMaxHeuristicDepth =
+    kMaxBvhDepth - 40;  // deeper nodes are halved by count: at most 32 levels more
 
 struct Split {
   int axis = -1;
@@ -150,37 +152,59 @@ class Builder {
   std::vector<BvhNode> nodes_;
 };
 
-/// Moves the elements of one kind into the order in which `order` visits them and tells the
-/// objects.
-template <class Shape>
-void Reorder(std::vector<Shape>& shapes, ShapeKind kind, const std::vector<std::uint32_t>& order,
-             std::vector<Object>& objects) {
-  std::vector<Shape> moved;
+/// The elements of one kind in the order in which `order` visits them; tells the objects.
+template <class Real, class From>
+auto Reordered(const std::vector<From>& shapes, ShapeKind kind,
+               const std::vector<std::uint32_t>& order, std::vector<Object>& objects) {
+  std::vector<decltype(Converted<Real>(shapes[0]))> moved;
   moved.reserve(shapes.size());
   for (const std::uint32_t number : order) {
     Object& object = objects[number];
     if (object.kind != kind) continue;
-    moved.push_back(shapes[object.index]);
+    moved.push_back(Converted<Real>(shapes[object.index]));
     object.index = static_cast<std::uint32_t>(moved.size() - 1);
   }
-  shapes = std::move(moved);
+  return moved;
+}
+
+template <class Real, class From>
+auto AllConverted(const std::vector<From>& elements) {
+  std::vector<decltype(Converted<Real>(elements[0]))> converted;
+  converted.reserve(elements.size());
+  for (const From& element : elements) converted.push_back(Converted<Real>(element));
+  return converted;
 }
 
 }  // namespace
 
-Bvh BuildBvh(Shapes& shapes) {
+template <class Real>
+Model<Real> BuildModel(Shapes&& shapes) {
   Builder builder(shapes);
   builder.Build();
-  Bvh bvh;
-  bvh.nodes = builder.TakeNodes();
-  Reorder(shapes.spheres, ShapeKind::kSphere, builder.order(), shapes.objects);
-  Reorder(shapes.cones, ShapeKind::kCone, builder.order(), shapes.objects);
-  Reorder(shapes.triangles, ShapeKind::kTriangle, builder.order(), shapes.objects);
-  Reorder(shapes.polygons, ShapeKind::kPolygon, builder.order(), shapes.objects);
-  bvh.entries.reserve(builder.order().size());
-  for (const std::uint32_t number : builder.order())
-    bvh.entries.push_back({shapes.objects[number].kind, shapes.objects[number].index, number});
-  return bvh;
+  const std::vector<std::uint32_t>& order = builder.order();
+  std::vector<Object>& objects = shapes.objects;
+  Model<Real> model;
+  model.spheres = Reordered<Real>(shapes.spheres, ShapeKind::kSphere, order, objects);
+  model.cones = Reordered<Real>(shapes.cones, ShapeKind::kCone, order, objects);
+  model.triangles = Reordered<Real>(shapes.triangles, ShapeKind::kTriangle, order, objects);
+  model.polygons = Reordered<Real>(shapes.polygons, ShapeKind::kPolygon, order, objects);
+  model.patches = Reordered<Real>(shapes.patches, ShapeKind::kPatch, order, objects);
+  model.vertices = AllConverted<Real>(shapes.vertices);
+  model.outlines = AllConverted<Real>(shapes.outlines);
+  model.normals = AllConverted<Real>(shapes.normals);
+  std::vector<BvhEntry> entries;
+  entries.reserve(order.size());
+  for (const std::uint32_t number : order)
+    entries.push_back({objects[number].kind, objects[number].index, number});
+  model.entries = std::move(entries);
+  model.nodes = builder.TakeNodes();
+  model.objects = std::move(shapes.objects);
+  shapes = {};
+  return model;
 }
+
+template Model<float> BuildModel(Shapes&&);
+template Model<double> BuildModel(Shapes&&);
+template Model<long double> BuildModel(Shapes&&);
 
 }  // namespace stipple::raytracer

@@ -3,34 +3,60 @@
 // boxes that begin behind the best hit so far are skipped.
 #include <array>
 
-#include "raytracer/geometry/bvh.h"
+#include "raytracer/errors.h"
+#include "raytracer/geometry/intersect.h"
+#include "raytracer/geometry/kernel.h"
 
 namespace stipple::raytracer {
 namespace {
 
 /// What one walk needs of its ray, prepared once.
+template <class Real>
 struct Walk {
-  const Shapes& shapes;
-  const Ray& ray;
-  ShearRay shear;
+  const Model<Real>& model;
+  const Ray<Real>& ray;
+  ShearRay<Real> shear;
 
-  Walk(const Shapes& all, const Ray& with)
-      : shapes(all), ray(with), shear(all.triangles.empty() ? ShearRay() : ShearRay(with)) {}
+  Walk(const Model<Real>& all, const Ray<Real>& with)
+      : model(all),
+        ray(with),
+        shear(all.triangles.empty() ? ShearRay<Real>() : ShearRay<Real>(with)) {}
 
-  TriangleHit Meet(const BvhEntry& entry) const {
+  TriangleHit<Real> Meet(const BvhEntry& entry) const {
     switch (entry.kind) {
       case ShapeKind::kSphere:
-        return {IntersectSphere(shapes.spheres[entry.index], ray), 0, 0};
+        return {IntersectSphere(model.spheres[entry.index], ray), 0, 0};
       case ShapeKind::kCone:
-        return {IntersectCone(shapes.cones[entry.index], ray), 0, 0};
+        return {IntersectCone(model.cones[entry.index], ray), 0, 0};
       case ShapeKind::kTriangle:
-        return IntersectTriangle(shapes.triangles[entry.index], shear);
-      case ShapeKind::kPolygon:
-        return {IntersectPolygon(shapes.polygons[entry.index], shapes, ray), 0, 0};
+        return IntersectTriangle(model.triangles[entry.index], shear);
+      case ShapeKind::kPolygon: {
+        const Polygon<Real>& polygon = model.polygons[entry.index];
+        const std::span outline(model.outlines.data() + polygon.first_vertex, polygon.vertex_count);
+        return {IntersectPolygon(polygon, outline, ray), 0, 0};
+      }
+      case ShapeKind::kPatch:
+        break;
     }
-    return {kMiss, 0, 0};
+    return {kMiss<Real>, 0, 0};
   }
 };
+
+/// Boxes are tested in double, whatever the kernel computes in.
+template <class Real>
+Ray<double> InDouble(const Ray<Real>& ray) {
+  const auto rounded = [](Vec<Real> v) {
+    return Vec3{static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+  };
+  return {rounded(ray.origin), rounded(ray.direction)};
+}
+
+/// A distance for box tests, no smaller than `t`.
+template <class Real>
+double Far(Real t) {
+  const auto rounded = static_cast<double>(t);
+  return static_cast<Real>(rounded) < t ? std::nextafter(rounded, kMiss<double>) : rounded;
+}
 
 struct Pending {
   std::uint32_t node;
@@ -51,81 +77,104 @@ inline bool NextNode(std::array<Pending, kMaxBvhDepth>& stack, int& depth, doubl
 }
 
 /// Chooses the nearer child and remembers the other; false if the ray meets neither.
-inline bool Descend(const Bvh& bvh, const SlabRay& slab, double max_t,
+template <class Model>
+inline bool Descend(const Model& model, const SlabRay& slab, double max_t,
                     std::array<Pending, kMaxBvhDepth>& stack, int& depth, std::uint32_t& node) {
-  const std::uint32_t left = bvh.nodes[node].first;
-  const double left_enter = EnterBounds(bvh.nodes[left].bounds, slab, max_t);
-  const double right_enter = EnterBounds(bvh.nodes[left + 1].bounds, slab, max_t);
+  const std::uint32_t left = model.nodes[node].first;
+  const double left_enter = EnterBounds(model.nodes[left].bounds, slab, Far(max_t));
+  const double right_enter = EnterBounds(model.nodes[left + 1].bounds, slab, Far(max_t));
   const bool left_first = left_enter <= right_enter;
   const double near_enter = left_first ? left_enter : right_enter;
   const double far_enter = left_first ? right_enter : left_enter;
-  if (near_enter == kMiss) return false;
+  if (near_enter == kMiss<double>) return false;
   node = left_first ? left : left + 1;
-  if (far_enter != kMiss)
+  if (far_enter != kMiss<double>)
     stack[static_cast<std::size_t>(depth++)] = {left_first ? left + 1 : left, far_enter};
   return true;
 }
 
+template <class Real>
+class ScalarKernel final : public Kernel<Real> {
+ public:
+  explicit ScalarKernel(const Model<Real>& model) : model_(model) {}
+
+  [[gnu::noinline]] Hit<Real> Intersect(const Ray<Real>& ray, TestCounts& tests) const override {
+    Hit<Real> best;
+    if (model_.nodes.empty()) return best;
+    const SlabRay slab(InDouble(ray));
+    const Walk<Real> walk(model_, ray);
+    std::array<Pending, kMaxBvhDepth> stack;
+    int depth = 0;
+    std::uint32_t node = 0;
+    std::uint64_t box_tests = 1, primitive_tests = 0;
+    bool more = EnterBounds(model_.nodes[0].bounds, slab, kMiss<double>) != kMiss<double>;
+    while (more) {
+      if (model_.nodes[node].count == 0) {
+        box_tests += 2;
+        more = Descend(model_, slab, Far(best.t), stack, depth, node) ||
+               NextNode(stack, depth, Far(best.t), node);
+        continue;
+      }
+      const BvhEntry* const entries = model_.entries.data() + model_.nodes[node].first;
+      for (std::uint32_t i = 0; i < model_.nodes[node].count; ++i) {
+        const TriangleHit<Real> met = walk.Meet(entries[i]);
+        if (met.t < best.t ||
+            (met.t == best.t && entries[i].object < best.object && met.t != kMiss<Real>))
+          best = {met.t, entries[i].object, met.u, met.v};
+      }
+      primitive_tests += model_.nodes[node].count;
+      more = NextNode(stack, depth, Far(best.t), node);
+    }
+    tests.box_tests += box_tests;
+    tests.primitive_tests += primitive_tests;
+    return best;
+  }
+
+  [[gnu::noinline]] bool Occluded(const Ray<Real>& ray, Real max_t,
+                                  TestCounts& tests) const override {
+    if (model_.nodes.empty()) return false;
+    const SlabRay slab(InDouble(ray));
+    const Walk<Real> walk(model_, ray);
+    std::array<Pending, kMaxBvhDepth> stack;
+    int depth = 0;
+    std::uint32_t node = 0;
+    std::uint64_t box_tests = 1, primitive_tests = 0;
+    bool found = false;
+    bool more = EnterBounds(model_.nodes[0].bounds, slab, Far(max_t)) != kMiss<double>;
+    while (more && !found) {
+      if (model_.nodes[node].count == 0) {
+        box_tests += 2;
+        more = Descend(model_, slab, Far(max_t), stack, depth, node) ||
+               NextNode(stack, depth, Far(max_t), node);
+        continue;
+      }
+      const BvhEntry* const entries = model_.entries.data() + model_.nodes[node].first;
+      for (std::uint32_t i = 0; i < model_.nodes[node].count && !found; ++i) {
+        found = walk.Meet(entries[i]).t < max_t;
+        ++primitive_tests;
+      }
+      more = NextNode(stack, depth, Far(max_t), node);
+    }
+    tests.box_tests += box_tests;
+    tests.primitive_tests += primitive_tests;
+    return found;
+  }
+
+ private:
+  const Model<Real>& model_;
+};
+
 }  // namespace
 
-[[gnu::noinline]] Hit Intersect(const Bvh& bvh, const Shapes& shapes, const Ray& ray,
-                                TestCounts& tests) {
-  Hit best;
-  if (bvh.nodes.empty()) return best;
-  const SlabRay slab(ray);
-  const Walk walk(shapes, ray);
-  std::array<Pending, kMaxBvhDepth> stack;
-  int depth = 0;
-  std::uint32_t node = 0;
-  std::uint64_t box_tests = 1, primitive_tests = 0;
-  bool more = EnterBounds(bvh.nodes[0].bounds, slab, kMiss) != kMiss;
-  while (more) {
-    if (bvh.nodes[node].count == 0) {
-      box_tests += 2;
-      more = Descend(bvh, slab, best.t, stack, depth, node) || NextNode(stack, depth, best.t, node);
-      continue;
-    }
-    const BvhEntry* const entries = bvh.entries.data() + bvh.nodes[node].first;
-    for (std::uint32_t i = 0; i < bvh.nodes[node].count; ++i) {
-      const TriangleHit met = walk.Meet(entries[i]);
-      if (met.t < best.t || (met.t == best.t && entries[i].object < best.object && met.t != kMiss))
-        best = {met.t, entries[i].object, met.u, met.v};
-    }
-    primitive_tests += bvh.nodes[node].count;
-    more = NextNode(stack, depth, best.t, node);
-  }
-  tests.box_tests += box_tests;
-  tests.primitive_tests += primitive_tests;
-  return best;
+template <class Real>
+std::unique_ptr<Kernel<Real>> MakeKernel(std::string_view name, const Model<Real>& model) {
+  if (name == "bvh" || name == "scalar") return std::make_unique<ScalarKernel<Real>>(model);
+  throw UsageError(std::string("--kernel ") + std::string(name) + ": not in this build");
 }
 
-[[gnu::noinline]] bool Occluded(const Bvh& bvh, const Shapes& shapes, const Ray& ray, double max_t,
-                                TestCounts& tests) {
-  if (bvh.nodes.empty()) return false;
-  const SlabRay slab(ray);
-  const Walk walk(shapes, ray);
-  std::array<Pending, kMaxBvhDepth> stack;
-  int depth = 0;
-  std::uint32_t node = 0;
-  std::uint64_t box_tests = 1, primitive_tests = 0;
-  bool found = false;
-  bool more = EnterBounds(bvh.nodes[0].bounds, slab, max_t) != kMiss;
-  while (more && !found) {
-    if (bvh.nodes[node].count == 0) {
-      box_tests += 2;
-      more = Descend(bvh, slab, max_t, stack, depth, node) || NextNode(stack, depth, max_t, node);
-      continue;
-    }
-    const BvhEntry* const entries = bvh.entries.data() + bvh.nodes[node].first;
-    for (std::uint32_t i = 0; i < bvh.nodes[node].count && !found; ++i) {
-      found = walk.Meet(entries[i]).t < max_t;
-      ++primitive_tests;
-    }
-    more = NextNode(stack, depth, max_t, node);
-  }
-  tests.box_tests += box_tests;
-  tests.primitive_tests += primitive_tests;
-  return found;
-}
+template std::unique_ptr<Kernel<float>> MakeKernel(std::string_view, const Model<float>&);
+template std::unique_ptr<Kernel<double>> MakeKernel(std::string_view, const Model<double>&);
+template std::unique_ptr<Kernel<long double>> MakeKernel(std::string_view,
+                                                         const Model<long double>&);
 
 }  // namespace stipple::raytracer

@@ -22,7 +22,7 @@ Bounds Widened(Bounds box) {
   return box;
 }
 
-OutlinePoint SeenAlong(int axis, Vec3 p) {
+OutlinePoint<double> SeenAlong(int axis, Vec3 p) {
   if (axis == 0) return {p.y, p.z};
   if (axis == 1) return {p.z, p.x};
   return {p.x, p.y};
@@ -62,7 +62,7 @@ void Shapes::AddPolygon(std::span<const Vec3> polygon, std::span<const Vec3> ver
   normals.insert(normals.end(), vertex_normals.begin(), vertex_normals.end());
   if (polygon.size() == 3) {
     objects.push_back({ShapeKind::kTriangle, SizeOf(triangles), material});
-    Triangle triangle{{}, first_normal};
+    Triangle<double> triangle{{}, first_normal};
     for (std::size_t i = 0; i < 3; ++i) {
       triangle.corner[i][0] = polygon[i].x;
       triangle.corner[i][1] = polygon[i].y;
@@ -82,17 +82,23 @@ void Shapes::AddPolygon(std::span<const Vec3> polygon, std::span<const Vec3> ver
   }
 }
 
+void Shapes::AddPatch(std::span<const Vec3, 16> control, std::uint32_t material) {
+  objects.push_back({ShapeKind::kPatch, SizeOf(patches), material});
+  patches.push_back({});
+  std::ranges::copy(control, patches.back().control);
+}
+
 Bounds BoundsOf(const Shapes& shapes, const Object& object) {
   Bounds box;
   switch (object.kind) {
     case ShapeKind::kSphere: {
-      const Sphere& sphere = shapes.spheres[object.index];
+      const Sphere<double>& sphere = shapes.spheres[object.index];
       const double r = std::abs(sphere.radius);
       box = {sphere.center - Vec3{r, r, r}, sphere.center + Vec3{r, r, r}};
       break;
     }
     case ShapeKind::kCone: {
-      const Cone& cone = shapes.cones[object.index];
+      const Cone<double>& cone = shapes.cones[object.index];
       const Vec3 extent = CircleExtent(cone.axis);
       for (const auto& [center, radius] : {std::pair{cone.base, std::abs(cone.base_radius)},
                                            std::pair{cone.apex, std::abs(cone.apex_radius)}}) {
@@ -106,11 +112,14 @@ Bounds BoundsOf(const Shapes& shapes, const Object& object) {
         box.Include(Vec3{corner[0], corner[1], corner[2]});
       break;
     case ShapeKind::kPolygon: {
-      const Polygon& polygon = shapes.polygons[object.index];
+      const Polygon<double>& polygon = shapes.polygons[object.index];
       for (std::uint32_t i = 0; i < polygon.vertex_count; ++i)
         box.Include(shapes.vertices[polygon.first_vertex + i]);
       break;
     }
+    case ShapeKind::kPatch:  // a patch lies within the hull of its control points
+      for (const Vec3& point : shapes.patches[object.index].control) box.Include(point);
+      break;
   }
   return Widened(box);
 }

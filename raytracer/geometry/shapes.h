@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What a ray can hit: the primitives of a scene, stored by kind.
+// What a ray can hit: the primitives of a scene, stored by kind, as the scene is put together.
 //
 // An *object* is one primitive as the scene file counts them; its number is its position in the
-// file and never changes. The arrays by kind may be reordered (the BVH does, so that neighbours in
-// space are neighbours in memory).
+// file and never changes. Scenes are double; a model (model.h) may have another kind of number.
 #ifndef STIPPLE_RAYTRACER_GEOMETRY_SHAPES_H
 #define STIPPLE_RAYTRACER_GEOMETRY_SHAPES_H
 
@@ -16,41 +15,53 @@
 
 namespace stipple::raytracer {
 
-enum class ShapeKind : std::uint32_t { kSphere, kCone, kTriangle, kPolygon };
+enum class ShapeKind : std::uint32_t { kSphere, kCone, kTriangle, kPolygon, kPatch };
 
 /// A negative radius turns the surface: its normal points inwards.
+template <class Real>
 struct Sphere {
-  Vec3 center;
-  double radius;
+  Vec<Real> center;
+  Real radius;
 };
 
 /// The side of a truncated cone, without its ends; a cylinder if both radii are equal. Negative
 /// radii turn the surface.
+template <class Real>
 struct Cone {
-  Vec3 base, apex;
-  double base_radius, apex_radius;
-  Vec3 axis;      // unit length, from base to apex
-  double height;  // distance from base to apex
+  Vec<Real> base, apex;
+  Real base_radius, apex_radius;
+  Vec<Real> axis;  // unit length, from base to apex
+  Real height;     // distance from base to apex
 };
 
 /// Corners as plain numbers: the intersection picks coordinates by index.
+template <class Real>
 struct Triangle {
-  double corner[3][3];
+  Real corner[3][3];
   std::uint32_t first_normal;  // into Shapes::normals, or kNoNormals
 };
 
 /// A plane polygon of any outline, convex or not.
+template <class Real>
 struct Polygon {
-  Vec3 normal;                 // unit length, by the right-hand rule
-  double offset;               // the plane is Dot(normal, p) == offset
+  Vec<Real> normal;            // unit length, by the right-hand rule
+  Real offset;                 // the plane is Dot(normal, p) == offset
   std::uint32_t first_vertex;  // into Shapes::vertices and Shapes::outlines
   std::uint32_t vertex_count;
   std::uint32_t first_normal;  // into Shapes::normals, or kNoNormals
   int dropped_axis;            // the outline is the polygon seen along this axis (0, 1, 2)
 };
 
+template <class Real>
 struct OutlinePoint {
-  double u, v;
+  Real u, v;
+};
+
+/// A bicubic Bezier patch: point (u, v) is the sum of B_i(v) B_j(u) control[4 i + j]. Its normal is
+/// dP/du x dP/dv.
+template <class Real>
+struct Patch {
+  Vec<Real> control[16];
 };
 
 struct Object {
@@ -63,13 +74,14 @@ inline constexpr std::uint32_t kNoNormals = 0xffffffff;
 
 struct Shapes {
   std::vector<Object> objects;  // in file order
-  std::vector<Sphere> spheres;
-  std::vector<Cone> cones;
-  std::vector<Triangle> triangles;
-  std::vector<Polygon> polygons;
-  std::vector<Vec3> vertices;          // of polygons
-  std::vector<OutlinePoint> outlines;  // of polygons, as vertices
-  std::vector<Vec3> normals;           // of triangles and polygons that have one per vertex
+  std::vector<Sphere<double>> spheres;
+  std::vector<Cone<double>> cones;
+  std::vector<Triangle<double>> triangles;
+  std::vector<Polygon<double>> polygons;
+  std::vector<Patch<double>> patches;
+  std::vector<Vec3> vertices;                  // of polygons
+  std::vector<OutlinePoint<double>> outlines;  // of polygons, as vertices
+  std::vector<Vec3> normals;                   // of triangles and polygons that have one per vertex
 
   void AddSphere(Vec3 center, double radius, std::uint32_t material);
   void AddCone(Vec3 base, double base_radius, Vec3 apex, double apex_radius,
@@ -77,6 +89,7 @@ struct Shapes {
   /// Three vertices make a triangle. `vertex_normals` is empty or has one unit vector per vertex.
   void AddPolygon(std::span<const Vec3> polygon, std::span<const Vec3> vertex_normals,
                   std::uint32_t material);
+  void AddPatch(std::span<const Vec3, 16> control, std::uint32_t material);
 };
 
 /// Twice the area of a polygon, along its normal (Newell's method: right for concave outlines too).

@@ -3,17 +3,20 @@
 #ifndef STIPPLE_RAYTRACER_GEOMETRY_SURFACE_H
 #define STIPPLE_RAYTRACER_GEOMETRY_SURFACE_H
 
-#include "raytracer/geometry/bvh.h"
+#include "raytracer/geometry/kernel.h"
 
 namespace stipple::raytracer {
 
 /// Both of unit length and on the side the object calls outside.
+template <class Real>
 struct Normals {
-  Vec3 face;     // of the geometry
-  Vec3 shading;  // interpolated between vertices where they have normals
+  Vec<Real> face;     // of the geometry
+  Vec<Real> shading;  // interpolated between vertices where they have normals
 };
 
-Normals NormalsAt(const Shapes& shapes, const Hit& hit, Vec3 point);
+/// `point`: where the ray that made the hit met the object.
+template <class Real>
+Normals<Real> NormalsAt(const Model<Real>& model, const Hit<Real>& hit, Vec<Real> point);
 
 }  // namespace stipple::raytracer
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <numeric>
+#include <utility>
+#include <vector>
 
 namespace stipple::raytracer {
 namespace {
@@ -19,14 +21,11 @@ int LatticeStep(int count) {
   return best;
 }
 
-}  // namespace
+struct Offset {
+  double x, y;  // from the point, in columns and rows
+};
 
-ImageSize RasterOf(ImageSize image, Samples samples) {
-  if (samples.corners()) return {image.width + 1, image.height + 1};
-  return image;
-}
-
-std::vector<Sampler::Offset> Sampler::OffsetsOf(Samples samples) {
+std::vector<Offset> OffsetsOf(Samples samples) {
   if (samples.corners()) return {{0, 0}};
   // A rank-1 lattice: for any count, one sample in each of `count` columns and rows of the pixel.
   const int count = samples.per_pixel;
@@ -37,21 +36,58 @@ std::vector<Sampler::Offset> Sampler::OffsetsOf(Samples samples) {
   return offsets;
 }
 
-Sampler::Sampler(const Scene& scene, const Bvh& bvh, ShadingChoice shading, ImageSize image,
-                 Samples samples)
-    : raster_(RasterOf(image, samples)),
-      camera_(scene.view, raster_),
-      offsets_(OffsetsOf(samples)),
-      tracer_(scene, bvh, shading) {}
+template <class Real>
+class SamplerIn final : public Sampler {
+ public:
+  SamplerIn(const Scene& scene, Tracer<Real> tracer, ImageSize image, Samples samples)
+      : raster_(RasterOf(image, samples)),
+        camera_(scene.view, raster_),
+        offsets_(OffsetsOf(samples)),
+        tracer_(std::move(tracer)) {}
 
-RayResult Sampler::Sample(RasterPoint point) {
-  const auto width = static_cast<RasterPoint>(raster_.width);
-  const double x = point % width;
-  const double y = point / width;
-  RayResult result;
-  for (const Offset& offset : offsets_)
-    tracer_.TraceEye(camera_.RayThrough(x + offset.x, y + offset.y), result);
-  return result;
+  RayResult Sample(RasterPoint point) override {
+    const auto width = static_cast<RasterPoint>(raster_.width);
+    const auto x = static_cast<Real>(point % width);
+    const auto y = static_cast<Real>(point / width);
+    RayResult result;
+    for (const Offset& offset : offsets_)
+      tracer_.TraceEye(
+          camera_.RayThrough(x + static_cast<Real>(offset.x), y + static_cast<Real>(offset.y)),
+          result);
+    return result;
+  }
+  const RayCounts& counts() const override { return tracer_.counts(); }
+
+ private:
+  ImageSize raster_;
+  Camera<Real> camera_;
+  std::vector<Offset> offsets_;
+  Tracer<Real> tracer_;
+};
+
+}  // namespace
+
+ImageSize RasterOf(ImageSize image, Samples samples) {
+  if (samples.corners()) return {image.width + 1, image.height + 1};
+  return image;
 }
+
+template <class Real>
+std::unique_ptr<Sampler> MakeSampler(const Scene& scene, const Model<Real>& model,
+                                     const Kernel<Real>& kernel, ShadingChoice shading,
+                                     ImageSize image, Samples samples) {
+  return std::make_unique<SamplerIn<Real>>(scene, Tracer<Real>(scene, model, kernel, shading),
+                                           image, samples);
+}
+
+template std::unique_ptr<Sampler> MakeSampler(const Scene&, const Model<float>&,
+                                              const Kernel<float>&, ShadingChoice, ImageSize,
+                                              Samples);
+template std::unique_ptr<Sampler> MakeSampler(const Scene&, const Model<double>&,
+                                              const Kernel<double>&, ShadingChoice, ImageSize,
+                                              Samples);
+template std::unique_ptr<Sampler> MakeSampler(const Scene&, const Model<long double>&,
+                                              const Kernel<long double>&, ShadingChoice, ImageSize,
+                                              Samples);
 
 }  // namespace stipple::raytracer

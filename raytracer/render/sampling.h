@@ -3,7 +3,7 @@
 #ifndef STIPPLE_RAYTRACER_RENDER_SAMPLING_H
 #define STIPPLE_RAYTRACER_RENDER_SAMPLING_H
 
-#include <vector>
+#include <memory>
 
 #include "raytracer/partition/ray_partition.h"
 #include "raytracer/render/tracer.h"
@@ -14,7 +14,8 @@ namespace stipple::raytracer {
 /// Rays per pixel; 0: a ray through each corner, shared by the four pixels around it, as SPD
 /// compares ray tracers.
 struct Samples {
-  int per_pixel = 0;
+  int per_pixel = 0;  // of adaptive sampling: the most
+  bool adaptive = false;
 
   bool corners() const { return per_pixel == 0; }
 };
@@ -25,24 +26,18 @@ ImageSize RasterOf(ImageSize image, Samples samples);
 /// Traces the points of a raster.
 class Sampler {
  public:
-  Sampler(const Scene& scene, const Bvh& bvh, ShadingChoice shading, ImageSize image,
-          Samples samples);
+  virtual ~Sampler() = default;
 
   /// All rays through one point.
-  RayResult Sample(RasterPoint point);
-  const RayCounts& counts() const { return tracer_.counts(); }
-
- private:
-  struct Offset {
-    double x, y;  // from the point, in columns and rows
-  };
-  static std::vector<Offset> OffsetsOf(Samples samples);
-
-  ImageSize raster_;
-  Camera camera_;
-  std::vector<Offset> offsets_;
-  Tracer tracer_;
+  virtual RayResult Sample(RasterPoint point) = 0;
+  virtual const RayCounts& counts() const = 0;
 };
+
+/// Computes in `Real` throughout. Scene, model and kernel must outlive it.
+template <class Real>
+std::unique_ptr<Sampler> MakeSampler(const Scene& scene, const Model<Real>& model,
+                                     const Kernel<Real>& kernel, ShadingChoice shading,
+                                     ImageSize image, Samples samples);
 
 }  // namespace stipple::raytracer
 

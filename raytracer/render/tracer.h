@@ -18,7 +18,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "raytracer/geometry/bvh.h"
+#include "raytracer/geometry/kernel.h"
 #include "raytracer/scene/scene.h"
 
 namespace stipple::raytracer {
@@ -54,43 +54,46 @@ struct RayResult {
 };
 static_assert(sizeof(RayResult) == 40);
 
+template <class Real>
 class Tracer {
  public:
-  /// Both are kept by reference.
-  Tracer(const Scene& scene, const Bvh& bvh, ShadingChoice choice);
+  /// All are kept by reference.
+  Tracer(const Scene& scene, const Model<Real>& model, const Kernel<Real>& kernel,
+         ShadingChoice choice);
 
   /// Follows an eye ray and all that come of it, and adds what they find.
-  void TraceEye(const Ray& ray, RayResult& result);
+  void TraceEye(const Ray<Real>& ray, RayResult& result);
 
   const RayCounts& counts() const { return counts_; }
 
  private:
   /// A place where a ray met an object, ready for shading.
   struct Surface {
-    Vec3 point;
-    Vec3 face;      // unit normal of the geometry, towards the ray's origin
-    Vec3 normal;    // unit normal for shading, on the same side
-    double offset;  // distance that new rays keep from the surface
-    bool leaving;   // the ray came from inside
+    Vec<Real> point;
+    Vec<Real> face;    // unit normal of the geometry, towards the ray's origin
+    Vec<Real> normal;  // unit normal for shading, on the same side
+    Real offset;       // distance that new rays keep from the surface
+    bool leaving;      // the ray came from inside
     const Material* material;
 
     /// Where new rays start: a little off the surface, on the side they go to.
-    Vec3 Outside() const { return point + face * offset; }
-    Vec3 Inside() const { return point - face * offset; }
+    Vec<Real> Outside() const { return point + face * offset; }
+    Vec<Real> Inside() const { return point - face * offset; }
   };
 
-  void Trace(const Ray& ray, Vec3 throughput, int depth, RayResult& result);
-  Surface SurfaceAt(const Ray& ray, const Hit& hit) const;
-  Vec3 LocalColor(const Ray& ray, const Surface& surface, bool& in_shadow);
-  void Follow(const Ray& ray, const Surface& surface, Vec3 throughput, int depth,
+  void Trace(const Ray<Real>& ray, Vec<Real> throughput, int depth, RayResult& result);
+  Surface SurfaceAt(const Ray<Real>& ray, const Hit<Real>& hit) const;
+  Vec<Real> LocalColor(const Ray<Real>& ray, const Surface& surface, bool& in_shadow);
+  void Follow(const Ray<Real>& ray, const Surface& surface, Vec<Real> throughput, int depth,
               RayResult& result);
 
-  bool WorthTracing(Vec3 throughput) const;
+  bool WorthTracing(Vec<Real> throughput) const;
 
   const Scene& scene_;
-  const Bvh& bvh_;
+  const Model<Real>& model_;
+  const Kernel<Real>& kernel_;
   ShadingChoice choice_;
-  double light_scale_;
+  Real light_scale_;
   RayCounts counts_;
 };
 

@@ -14,7 +14,8 @@ double SizeForLimit(const Shapes& shapes, const Object& object) {
   return std::abs(shapes.spheres[object.index].radius);
 }
 
-void CopyPolygon(const Shapes& from, const Polygon& polygon, std::uint32_t material, Shapes& to) {
+void CopyPolygon(const Shapes& from, const Polygon<double>& polygon, std::uint32_t material,
+                 Shapes& to) {
   const std::span vertices(from.vertices.data() + polygon.first_vertex, polygon.vertex_count);
   std::span<const Vec3> normals;
   if (polygon.first_normal != kNoNormals)
@@ -22,7 +23,7 @@ void CopyPolygon(const Shapes& from, const Polygon& polygon, std::uint32_t mater
   to.AddPolygon(vertices, normals, material);
 }
 
-void CopyTriangle(const Shapes& from, const Triangle& triangle, std::uint32_t material,
+void CopyTriangle(const Shapes& from, const Triangle<double>& triangle, std::uint32_t material,
                   Shapes& to) {
   Vec3 vertices[3];
   for (int i = 0; i < 3; ++i)
@@ -36,12 +37,12 @@ void CopyTriangle(const Shapes& from, const Triangle& triangle, std::uint32_t ma
 void CopyObject(const Shapes& from, const Object& object, Shapes& to) {
   switch (object.kind) {
     case ShapeKind::kSphere: {
-      const Sphere& s = from.spheres[object.index];
+      const Sphere<double>& s = from.spheres[object.index];
       to.AddSphere(s.center, s.radius, object.material);
       break;
     }
     case ShapeKind::kCone: {
-      const Cone& c = from.cones[object.index];
+      const Cone<double>& c = from.cones[object.index];
       to.AddCone(c.base, c.base_radius, c.apex, c.apex_radius, object.material);
       break;
     }
@@ -50,6 +51,9 @@ void CopyObject(const Shapes& from, const Object& object, Shapes& to) {
       break;
     case ShapeKind::kPolygon:
       CopyPolygon(from, from.polygons[object.index], object.material, to);
+      break;
+    case ShapeKind::kPatch:
+      to.AddPatch(from.patches[object.index].control, object.material);
       break;
   }
 }

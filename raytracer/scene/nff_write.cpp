@@ -58,29 +58,33 @@ class NffWriter {
   void WriteObject(const Object& object) {
     switch (object.kind) {
       case ShapeKind::kSphere: {
-        const Sphere& s = shapes_.spheres[object.index];
+        const Sphere<double>& s = shapes_.spheres[object.index];
         Line("s {} {}", Text(s.center), s.radius);
         break;
       }
       case ShapeKind::kCone: {
-        const Cone& c = shapes_.cones[object.index];
+        const Cone<double>& c = shapes_.cones[object.index];
         Line("c {} {} {} {}", Text(c.base), c.base_radius, Text(c.apex), c.apex_radius);
         break;
       }
       case ShapeKind::kTriangle: {
-        const Triangle& t = shapes_.triangles[object.index];
+        const Triangle<double>& t = shapes_.triangles[object.index];
         Line("{} 3", t.first_normal == kNoNormals ? "p" : "pp");
         for (std::uint32_t i = 0; i < 3; ++i)
           WriteVertex({t.corner[i][0], t.corner[i][1], t.corner[i][2]}, t.first_normal, i);
         break;
       }
       case ShapeKind::kPolygon: {
-        const Polygon& p = shapes_.polygons[object.index];
+        const Polygon<double>& p = shapes_.polygons[object.index];
         Line("{} {}", p.first_normal == kNoNormals ? "p" : "pp", p.vertex_count);
         for (std::uint32_t i = 0; i < p.vertex_count; ++i)
           WriteVertex(shapes_.vertices[p.first_vertex + i], p.first_normal, i);
         break;
       }
+      case ShapeKind::kPatch:
+        Line("bezier");
+        for (const Vec3& point : shapes_.patches[object.index].control) Line("{}", Text(point));
+        break;
     }
   }
 

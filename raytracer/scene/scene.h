@@ -20,6 +20,7 @@ struct Material {
   double shine = 0;         // exponent of the highlight
   double transmission = 0;  // T
   double refraction = 1;    // index of refraction inside
+  int priority = 0;         // where media overlap the higher one counts; 0: NFF's rule (extension)
 
   friend bool operator==(const Material&, const Material&) = default;
 };
@@ -28,6 +29,7 @@ struct Light {
   Vec3 position;
   Vec3 color{1, 1, 1};
   bool colored = false;  // the file gave a colour
+  double radius = 0;     // of a light that rays can meet (extension); 0: a point, as NFF has them
 };
 
 struct Scene {

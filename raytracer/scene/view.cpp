@@ -3,21 +3,32 @@
 
 #include <numbers>
 
+#include "raytracer/geometry/convert.h"
+
 namespace stipple::raytracer {
 
-Camera::Camera(const View& view, ImageSize raster) : from_(view.from) {
-  const Vec3 forward = Normalized(view.at - view.from);
-  const Vec3 right = Normalized(Cross(forward, view.up));
-  const Vec3 down = Cross(forward, right);
-  const double half_height = std::tan(view.angle_deg * std::numbers::pi / 360);
-  const double pitch = raster.height > 1 ? 2 * half_height / (raster.height - 1) : 2 * half_height;
+template <class Real>
+Camera<Real>::Camera(const View& view, ImageSize raster) : from_(Converted<Real>(view.from)) {
+  const Vec<Real> forward = Normalized(Converted<Real>(view.at) - from_);
+  const Vec<Real> right = Normalized(Cross(forward, Converted<Real>(view.up)));
+  const Vec<Real> down = Cross(forward, right);
+  const Real half_height =
+      std::tan(static_cast<Real>(view.angle_deg) * std::numbers::pi_v<Real> / 360);
+  const Real pitch =
+      raster.height > 1 ? 2 * half_height / static_cast<Real>(raster.height - 1) : 2 * half_height;
   right_ = right * pitch;
   down_ = down * pitch;
-  corner_ = forward - right_ * (0.5 * (raster.width - 1)) - down_ * (0.5 * (raster.height - 1));
+  corner_ = forward - right_ * (static_cast<Real>(raster.width - 1) / 2) -
+            down_ * (static_cast<Real>(raster.height - 1) / 2);
 }
 
-Ray Camera::RayThrough(double x, double y) const {
+template <class Real>
+Ray<Real> Camera<Real>::RayThrough(Real x, Real y) const {
   return {from_, Normalized(corner_ + right_ * x + down_ * y)};
 }
+
+template class Camera<float>;
+template class Camera<double>;
+template class Camera<long double>;
 
 }  // namespace stipple::raytracer

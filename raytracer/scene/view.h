@@ -23,6 +23,7 @@ struct View {
 };
 
 /// A view made ready for a raster of rays.
+template <class Real>
 class Camera {
  public:
   /// `raster`: rays across and down.
@@ -30,13 +31,13 @@ class Camera {
 
   /// The ray through column x and row y of the raster, counted from the upper left; fractions are
   /// allowed.
-  Ray RayThrough(double x, double y) const;
+  Ray<Real> RayThrough(Real x, Real y) const;
 
  private:
-  Vec3 from_;
-  Vec3 corner_;  // direction through (0, 0)
-  Vec3 right_;   // one column further
-  Vec3 down_;    // one row further
+  Vec<Real> from_;
+  Vec<Real> corner_;  // direction through (0, 0)
+  Vec<Real> right_;   // one column further
+  Vec<Real> down_;    // one row further
 };
 
 }  // namespace stipple::raytracer

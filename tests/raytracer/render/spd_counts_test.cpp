@@ -9,12 +9,25 @@
 namespace stipple::raytracer {
 namespace {
 
-RayCounts CountsOf(Scene& scene, ImageSize image, Samples samples) {
-  const Bvh bvh = BuildBvh(scene.shapes);
-  Sampler sampler(scene, bvh, {}, image, samples);
+/// A scene with all that traces it.
+struct Traced {
+  Traced(Scene with, ImageSize image, Samples samples, ShadingChoice shading = {})
+      : scene(std::move(with)),
+        model(BuildModel<double>(std::move(scene.shapes))),
+        kernel(MakeKernel("bvh", model)),
+        sampler(MakeSampler(scene, model, *kernel, shading, image, samples)) {}
+
+  Scene scene;
+  Model<double> model;
+  std::unique_ptr<Kernel<double>> kernel;
+  std::unique_ptr<Sampler> sampler;
+};
+
+RayCounts CountsOf(Scene scene, ImageSize image, Samples samples, ShadingChoice shading = {}) {
+  const Traced traced(std::move(scene), image, samples, shading);
   for (RasterPoint point = 0; point < PointCount(RasterOf(image, samples)); ++point)
-    sampler.Sample(point);
-  return sampler.counts();
+    traced.sampler->Sample(point);
+  return traced.sampler->counts();
 }
 
 struct Published {
@@ -30,8 +43,7 @@ constexpr Published kPublished[] = {{Balls, 4, 263169, 954368, 175095},
 
 TEST(SpdCounts, AreWithinHalfAPercentOfThePublished) {
   for (const Published& published : kPublished) {
-    Scene scene = published.scene(published.size);
-    const RayCounts counts = CountsOf(scene, {512, 512}, {});
+    const RayCounts counts = CountsOf(published.scene(published.size), {512, 512}, {});
     EXPECT_EQ(counts.eye_rays, 513U * 513U);
     const auto close = [](std::uint64_t count, double expected) {
       EXPECT_NEAR(static_cast<double>(count), expected, 0.005 * expected);
@@ -54,7 +66,7 @@ TEST(SpdCounts, DoNotChangeWhenASceneIsScaledOrMoved) {
         std::vector<Vec3>{map(scene.shapes.vertices[0]), map(scene.shapes.vertices[1]),
                           map(scene.shapes.vertices[2]), map(scene.shapes.vertices[3])},
         {}, 0);
-    for (const Sphere& sphere : scene.shapes.spheres)
+    for (const Sphere<double>& sphere : scene.shapes.spheres)
       moved.shapes.AddSphere(map(sphere.center), sphere.radius * scale, 1);
     moved.view.from = map(moved.view.from);
     moved.view.at = map(moved.view.at);
@@ -84,12 +96,8 @@ Scene GlassScene() {
 }
 
 TEST(Shading, DepthAndContributionLimitTheRays) {
-  Scene scene = GlassScene();
-  const Bvh bvh = BuildBvh(scene.shapes);
   const auto counts = [&](ShadingChoice choice) {
-    Sampler sampler(scene, bvh, choice, {16, 16}, {1});
-    for (RasterPoint point = 0; point < 256; ++point) sampler.Sample(point);
-    return sampler.counts();
+    return CountsOf(GlassScene(), {16, 16}, {1}, choice);
   };
   EXPECT_EQ(counts({1, 0}).reflected_rays, 0U);
   EXPECT_EQ(counts({1, 0}).refracted_rays, 0U);
@@ -102,9 +110,8 @@ TEST(Shading, WhatIsMissedHasTheBackgroundsColour) {
   Scene scene;
   scene.view = {{0, 0, 9}, {0, 0, 0}, {0, 1, 0}, 40, 0, {4, 4}};
   scene.background = {0.25, 0.5, 1};
-  const Bvh bvh = BuildBvh(scene.shapes);
-  Sampler sampler(scene, bvh, {}, {4, 4}, {3});
-  const RayResult result = sampler.Sample(5);
+  const Traced traced(std::move(scene), {4, 4}, {3});
+  const RayResult result = traced.sampler->Sample(5);
   EXPECT_EQ(result.color.red, 3 * kFixedOne / 4);
   EXPECT_EQ(result.color.blue, 3 * kFixedOne);
   EXPECT_EQ(result.object, kNoObject);
@@ -118,10 +125,10 @@ TEST(Shading, AMatteFloorFollowsLambert) {
   scene.materials = {{{1, 0.5, 0.25}, 0.8, 0, 0, 0, 0}};
   scene.shapes.AddPolygon(std::vector<Vec3>{{-50, -50, 0}, {50, -50, 0}, {50, 50, 0}, {-50, 50, 0}},
                           {}, 0);
-  const Bvh bvh = BuildBvh(scene.shapes);
-  Sampler sampler(scene, bvh, {}, {3, 3}, {1});
+  const Traced traced(std::move(scene), {3, 3}, {1});
   const auto red = [&](RasterPoint point) {
-    return static_cast<double>(sampler.Sample(point).color.red) / static_cast<double>(kFixedOne);
+    return static_cast<double>(traced.sampler->Sample(point).color.red) /
+           static_cast<double>(kFixedOne);
   };
   EXPECT_NEAR(red(4), 0.8 * 0.5, 1e-9);
   // The ray through the middle of the right edge meets the floor at (5, 0, 0).

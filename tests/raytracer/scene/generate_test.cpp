@@ -65,7 +65,7 @@ TEST(Generate, AnObjectLimitKeepsTheLargestBalls) {
   // All of the first four sizes (1 + 9 + 81 + 729) are kept, and the smallest fill up, in file
   // order.
   std::size_t large = 0;
-  for (const Sphere& sphere : scene.shapes.spheres) large += sphere.radius > 0.01 ? 1 : 0;
+  for (const Sphere<double>& sphere : scene.shapes.spheres) large += sphere.radius > 0.01 ? 1 : 0;
   EXPECT_EQ(large, 820U);
   EXPECT_NEAR(scene.shapes.spheres[0].radius, 0.5, 0);
   EXPECT_NEAR(scene.shapes.spheres[3].radius, 0.5 / 27, 1e-15);
