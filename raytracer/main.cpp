@@ -76,9 +76,11 @@ Scene Load(const World& world, const Options& options) {
 }
 
 template <class Real>
-Model<Real> Build(const World& world, Scene& scene) {
+Model<Real> Build(const World& world, Scene& scene, const Options& options) {
   Mark(Moment::kBuildBegins);
-  return OnAllRanks(world, [&] { return BuildModel<Real>(std::move(scene.shapes)); });
+  return OnAllRanks(world, [&] {
+    return BuildModel<Real>(std::move(scene.shapes), HierarchyFor(options.kernel));
+  });
 }
 
 template <class Real>
@@ -90,14 +92,13 @@ std::uint64_t BytesOf(Model<Real>& model) {
 
 template <class Real>
 Rendered RenderScene(const World& world, const Scene& scene, const Model<Real>& model,
-                     const Options& options) {
+                     const Kernel<Real>& kernel, const Options& options) {
   const ImageSize image = scene.view.resolution;
   const PartitionChoice choice{RasterOf(image, options.samples), options.tile,
                                static_cast<std::uint32_t>(options.bundle), options.select,
                                static_cast<std::uint64_t>(options.seed)};
-  const auto kernel = OnAllRanks(world, [&] { return MakeKernel(options.kernel, model); });
   const ShadingChoice shading{static_cast<int>(options.max_depth), options.min_contribution};
-  const auto sampler = MakeSampler(scene, model, *kernel, shading, image, options.samples);
+  const auto sampler = MakeSampler(scene, model, kernel, shading, image, options.samples);
   return Render(world, *sampler, options.partition, choice);
 }
 
@@ -137,10 +138,11 @@ void OnRank(const World& world, int rank, Work work) {
 template <class Real>
 void RenderAndReport(const World& world, Scene& scene, const Options& options, RankReport report) {
   Stopwatch watch;
-  Model<Real> model = Build<Real>(world, scene);
+  Model<Real> model = Build<Real>(world, scene, options);
+  const auto kernel = OnAllRanks(world, [&] { return MakeKernel(options.kernel, model); });
   report.build_s = watch.Lap();
   report.build_cpu_s = watch.LapCpu();
-  const Rendered rendered = RenderScene(world, scene, model, options);
+  const Rendered rendered = RenderScene(world, scene, model, *kernel, options);
   report.render_s = watch.Lap();
   report.render_cpu_s = watch.LapCpu();
   report.counts = rendered.counts;
