@@ -5,9 +5,6 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <functional>
-#include <limits>
-#include <numbers>
 
 #include "raytracer/errors.h"
 #include "raytracer/render/picture.h"
@@ -84,12 +81,6 @@ double ChangedPixels(const Image& a, const Image& b) {
   return static_cast<double>(changed) / static_cast<double>(pixels);
 }
 
-double Decibels(const Image& a, const Image& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.rgb.size(); ++i) sum += std::pow((a.rgb[i] - b.rgb[i]) / 255.0, 2);
-  return -10 * std::log10(sum / static_cast<double>(a.rgb.size()));
-}
-
 template <class Real>
 void AddRow(std::string_view name, std::string_view precision, std::string_view kernel,
             double shift, const Scene& scene, const PictureRun& truth,
@@ -102,38 +93,6 @@ void AddRow(std::string_view name, std::string_view precision, std::string_view 
   } catch (const UsageError&) {
     // A kernel that cannot trace this scene has no row.
   }
-}
-
-/// A ball as triangles; its poles lie on the z axis.
-void AddTessellated(const Sphere<double>& ball, int rows, int columns, std::uint32_t material,
-                    Shapes& shapes) {
-  const auto normal = [&](int row, int column) {
-    const double polar = std::numbers::pi * row / rows;
-    const double around = 2 * std::numbers::pi * (column % columns) / columns;
-    return Vec3{std::sin(polar) * std::cos(around), std::sin(polar) * std::sin(around),
-                std::cos(polar)};
-  };
-  const auto add = [&](const std::array<Vec3, 3>& normals) {
-    std::array<Vec3, 3> corners;
-    for (std::size_t i = 0; i < 3; ++i) corners[i] = ball.center + normals[i] * ball.radius;
-    shapes.AddPolygon(corners, normals, material);
-  };
-  for (int row = 0; row < rows; ++row)
-    for (int column = 0; column < columns; ++column) {
-      const Vec3 a = normal(row, column), b = normal(row + 1, column),
-                 c = normal(row + 1, column + 1), d = normal(row, column + 1);
-      if (row + 1 < rows) add({a, b, c});  // at the pole b and c are the same point
-      if (row > 0) add({a, c, d});
-    }
-}
-
-template <class Real>
-double BytesOf(Model<Real>& model) {
-  double bytes = 0;
-  model.ForEachArray([&](const auto& array) {
-    bytes += static_cast<double>(array.size() * sizeof(*array.data()));
-  });
-  return bytes;
 }
 
 }  // namespace
@@ -186,30 +145,6 @@ std::vector<ShiftRow> ShiftRows(int image_side, const std::vector<std::string_vi
         AddRow<double>(name, "double", kernel, shift, moved, truth, rows);
       }
     }
-  return rows;
-}
-
-std::vector<TessellationRow> TessellationRows(int balls_size, int image_side) {
-  std::vector<TessellationRow> rows;
-  const Scene exact = Balls(balls_size);
-  const ImageSize image{image_side, image_side};
-  const PictureRun truth = TracePicture<double>(exact, "bvh", image);
-  for (const int count : {0, 4, 8, 16}) {
-    Scene scene = count > 0 ? WithoutShapes(exact) : exact;
-    for (const Object& object : exact.shapes.objects) {
-      if (count == 0) break;
-      if (object.kind == ShapeKind::kSphere)
-        AddTessellated(exact.shapes.spheres[object.index], count, 2 * count, object.material,
-                       scene.shapes);
-      else
-        AddMapped(exact.shapes, object, 1, std::identity(), scene.shapes);
-    }
-    const std::size_t objects = scene.shapes.objects.size();
-    Model<double> model = BuildModel<double>(Shapes(scene.shapes));
-    const PictureRun run = TracePicture<double>(std::move(scene), "bvh", image);
-    rows.push_back({count, 2 * count, objects, run.cpu_s, BytesOf(model),
-                    Decibels(run.picture, truth.picture)});
-  }
   return rows;
 }
 

@@ -39,19 +39,6 @@ struct ShiftRow {
 /// --kernel; those that this build lacks are left out.
 std::vector<ShiftRow> ShiftRows(int image_side, const std::vector<std::string_view>& kernels);
 
-/// A row of the chart: balls exact (`rows` 0), or each ball as a mesh of `rows` x `columns` quads,
-/// halved to triangles, with normals.
-struct TessellationRow {
-  int rows, columns;
-  std::size_t objects;
-  double cpu_s;
-  double bytes;     // of the model
-  double decibels;  // of the picture against the exact one; infinite for that itself
-};
-
-/// Balls of a size of --scene-size: exact, 4 x 8, 8 x 16, 16 x 32.
-std::vector<TessellationRow> TessellationRows(int balls_size, int image_side);
-
 }  // namespace stipple::raytracer
 
 #endif
