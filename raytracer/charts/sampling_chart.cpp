@@ -94,7 +94,7 @@ std::string SentenceOf(const ChartTable& table) {
 }  // namespace
 
 ChartTable SamplingChart(Session& session) {
-  ChartTable table{.name = "sampling", .title = "Rays per pixel"};
+  ChartTable table{.name = "sampling", .title = "Rays per pixel", .quiet = "jittered"};
   table.y.title = "RMS error of a colour, of 1";
   table.more_columns = {"eye_rays", "decibels"};
   for (const ChartScene& scene : kChartScenes) AddScene(session, scene, table);
