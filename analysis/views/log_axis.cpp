@@ -29,20 +29,6 @@ int Round125Below(double value) {
   return number;
 }
 
-/// "0.001", "500", but powers of ten far from 1 as such.
-std::string TickText(double value) {
-  if (value > 0.9e-4 && value < 1.1e4) return fmt::format("{:g}", value);
-  constexpr std::string_view kDigits[] = {"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074",
-                                          "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
-  const int power = static_cast<int>(std::floor(std::log10(value) + 1e-9));
-  const auto factor = std::lround(value / std::pow(10.0, power));
-  std::string text = factor == 1 ? "10" : fmt::format("{}\u00b710", factor);
-  if (power < 0) text += "\u207b";
-  for (const char digit : std::to_string(std::abs(power)))
-    text += kDigits[static_cast<std::size_t>(digit - '0')];
-  return text;
-}
-
 }  // namespace
 
 double LogAxis::ShareOf(double value) const {
@@ -68,6 +54,19 @@ LogAxis AxisOver(std::string title, std::span<const double> values) {
   axis.least = std::log10(Round125(Round125Below(low / apart)));
   axis.most = std::log10(Round125(Round125Below(high * apart) + 1));
   return axis;
+}
+
+std::string TickText(double value) {
+  if (value <= 0 || (value > 0.9e-4 && value < 1.1e4)) return fmt::format("{:g}", value);
+  constexpr std::string_view kDigits[] = {"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074",
+                                          "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
+  const int power = static_cast<int>(std::floor(std::log10(value) + 1e-9));
+  const auto factor = std::lround(value / std::pow(10.0, power));
+  std::string text = factor == 1 ? "10" : fmt::format("{}\u00b710", factor);
+  if (power < 0) text += "\u207b";
+  for (const char digit : std::to_string(std::abs(power)))
+    text += kDigits[static_cast<std::size_t>(digit - '0')];
+  return text;
 }
 
 std::vector<LogTick> TicksOf(const LogAxis& axis) {

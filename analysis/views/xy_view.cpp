@@ -97,7 +97,7 @@ Layer Discs(const Plane& plane, LabelRoom& room) {
       std::vector<Point> way;
       for (const XyPoint& p : series.points) way.push_back(plane.At(p));
       if (series.line && way.size() > 1) {
-        for (std::size_t i = 1; i < way.size(); ++i) room.TakeLine(way[i - 1], way[i]);
+        for (std::size_t i = 1; i < way.size() && !quiet; ++i) room.TakeLine(way[i - 1], way[i]);
         layer.shapes.emplace_back(LineShape{way, colour, quiet ? 1.0 : 1.75, false, 1});
       }
       for (std::size_t i = 0; i < way.size(); ++i) {

@@ -56,7 +56,7 @@ template <class Real>
 std::unique_ptr<ReadyScene<Real>> MakeReady(Scene scene, std::string_view kernel) {
   auto ready = std::make_unique<ReadyScene<Real>>();
   ready->scene = std::move(scene);
-  ready->model = BuildModel<Real>(std::move(ready->scene.shapes));
+  ready->model = BuildModel<Real>(std::move(ready->scene.shapes), HierarchyFor(kernel));
   ready->kernel = MakeKernel(kernel, ready->model);
   return ready;
 }
