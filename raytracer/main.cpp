@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
 #include <fstream>
 
 #include "raytracer/errors.h"
@@ -25,16 +26,28 @@ namespace {
 constexpr int kDifferent = 1;  // exit status of --compare
 constexpr int kUnusable = 2;   // exit status after InputError and UsageError
 
-/// Seconds since it was made or last asked.
+/// Seconds since it was made or last asked: of the clock on the wall, and of CPU time of the
+/// process.
 class Stopwatch {
  public:
   double Lap() {
     const double now = MPI_Wtime();
     return now - std::exchange(start_, now);
   }
+  double LapCpu() {
+    const double now = CpuSeconds();
+    return now - std::exchange(cpu_start_, now);
+  }
 
  private:
+  static double CpuSeconds() {
+    timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+  }
+
   double start_ = MPI_Wtime();
+  double cpu_start_ = CpuSeconds();
 };
 
 int PrintComparison(const Options& options) {
@@ -68,6 +81,13 @@ Model<Real> Build(const World& world, Scene& scene, const Options& options) {
   return OnAllRanks(world, [&] {
     return BuildModel<Real>(std::move(scene.shapes), HierarchyFor(options.kernel));
   });
+}
+
+template <class Real>
+std::uint64_t BytesOf(Model<Real>& model) {
+  std::uint64_t bytes = 0;
+  model.ForEachArray([&bytes](const auto& array) { bytes += array.size() * sizeof(array[0]); });
+  return bytes;
 }
 
 template <class Real>
@@ -118,16 +138,18 @@ void OnRank(const World& world, int rank, Work work) {
 template <class Real>
 void RenderAndReport(const World& world, Scene& scene, const Options& options, RankReport report) {
   Stopwatch watch;
-  const Model<Real> model = Build<Real>(world, scene, options);
+  Model<Real> model = Build<Real>(world, scene, options);
   const auto kernel = OnAllRanks(world, [&] { return MakeKernel(options.kernel, model); });
   report.build_s = watch.Lap();
+  report.build_cpu_s = watch.LapCpu();
   const Rendered rendered = RenderScene(world, scene, model, *kernel, options);
   report.render_s = watch.Lap();
+  report.render_cpu_s = watch.LapCpu();
   report.counts = rendered.counts;
   report.messages = rendered.messages;
   OnRank(world, AssemblingRank(world, options.partition),
          [&] { WritePictures(rendered.raster, scene.view.resolution, options); });
-  const RunReport run{model.objects.size(), GatherReports(world, report)};
+  const RunReport run{model.objects.size(), BytesOf(model), GatherReports(world, report)};
   OnRank(world, 0, [&] { WriteReport(run, options); });
 }
 
