@@ -176,8 +176,10 @@ bool IsNearlyLinear(const Part<Real>& part, const Matrix2<Real>& inverse) {
       across_x = std::max(across_x, std::abs(inverse.xx * av + inverse.xy * bv));
       across_y = std::max(across_y, std::abs(inverse.yx * av + inverse.yy * bv - 1));
     }
+    // Written so that NaN is no.
+    if (!(along_x + across_x < kBend<Real> && along_y + across_y < kBend<Real>)) return false;
   }
-  return along_x + across_x < kBend<Real> && along_y + across_y < kBend<Real>;
+  return true;
 }
 
 template <class Real>
@@ -263,15 +265,13 @@ class PatchWalk {
     }
   }
 
-  /// As the ray sees it: the sum of the sides' lengths. The smaller of equals in parameters.
+  /// As the ray sees it, by the lengths of the control net.
   static bool IsLongerAlongU(const Part<Real>& part) {
     Real u = 0, v = 0;
     for (std::size_t i = 0; i < 4; ++i) {
       for (std::size_t j = 0; j < 3; ++j) {
-        u += std::abs(part.a[i][j + 1] - part.a[i][j]) + std::abs(part.b[i][j + 1] - part.b[i][j]) +
-             std::abs(part.t[i][j + 1] - part.t[i][j]);
-        v += std::abs(part.a[j + 1][i] - part.a[j][i]) + std::abs(part.b[j + 1][i] - part.b[j][i]) +
-             std::abs(part.t[j + 1][i] - part.t[j][i]);
+        u += std::abs(part.a[i][j + 1] - part.a[i][j]) + std::abs(part.b[i][j + 1] - part.b[i][j]);
+        v += std::abs(part.a[j + 1][i] - part.a[j][i]) + std::abs(part.b[j + 1][i] - part.b[j][i]);
       }
     }
     if (part.u_size <= SmallestPart<Real>()) return false;
