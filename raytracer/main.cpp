@@ -18,6 +18,7 @@
 #include "raytracer/report.h"
 #include "raytracer/scene/load.h"
 #include "raytracer/scene/nff.h"
+#include "raytracer/scene/shared_scene.h"
 
 namespace stipple::raytracer {
 namespace {
@@ -53,19 +54,9 @@ int PrintComparison(const Options& options) {
   return difference.Identical() ? 0 : kDifferent;
 }
 
-Scene Load(const World& world, const Options& options) {
-  Mark(Moment::kLoadBegins);
-  const SceneChoice choice{options.scene, options.scene_size,
-                           static_cast<std::uint64_t>(options.object_limit), options.camera};
-  Scene scene = OnAllRanks(world, [&] { return LoadScene(choice); });
-  if (options.resolution.width > 0) scene.view.resolution = options.resolution;
-  return scene;
-}
-
-template <class Real>
-Model<Real> Build(const World& world, Scene& scene) {
-  Mark(Moment::kBuildBegins);
-  return OnAllRanks(world, [&] { return BuildModel<Real>(std::move(scene.shapes)); });
+SceneChoice ChoiceOf(const Options& options) {
+  return {options.scene, options.scene_size, static_cast<std::uint64_t>(options.object_limit),
+          options.camera};
 }
 
 template <class Real>
@@ -115,34 +106,40 @@ void OnRank(const World& world, int rank, Work work) {
 }
 
 template <class Real>
-void RenderAndReport(const World& world, Scene& scene, const Options& options, RankReport report) {
+void RenderAndReport(const World& world, const Options& options) {
+  SharedScene<Real> shared = SceneForAll<Real>(world, ChoiceOf(options));
+  Scene& scene = shared.scene;
+  if (options.resolution.width > 0) scene.view.resolution = options.resolution;
+  RankReport report;
+  report.load_s = shared.load_s;
+  report.build_s = shared.build_s;
   Stopwatch watch;
-  const Model<Real> model = Build<Real>(world, scene);
-  report.build_s = watch.Lap();
-  const Rendered rendered = RenderScene(world, scene, model, options);
+  const Rendered rendered = RenderScene(world, scene, shared.model, options);
   report.render_s = watch.Lap();
   report.counts = rendered.counts;
   report.messages = rendered.messages;
   OnRank(world, AssemblingRank(world, options.partition),
          [&] { WritePictures(rendered.raster, scene.view.resolution, options); });
-  const RunReport run{model.objects.size(), GatherReports(world, report)};
-  OnRank(world, 0, [&] { WriteReport(run, options); });
+  const RunReport run{shared.model.objects.size(), GatherReports(world, report)};
+  OnRank(world, 0, [&] {
+    WriteReport(run, options);
+    if (!shared.kept_in.empty()) fmt::print("  scene from {}\n", shared.kept_in);
+  });
+}
+
+void WriteScene(const Options& options) {
+  const Scene scene = LoadScene(ChoiceOf(options));
+  WriteNff(scene, options.write_scene);
+  fmt::print("wrote {}: {} objects\n", options.write_scene, scene.shapes.objects.size());
 }
 
 void LoadAndRender(const World& world, const Options& options) {
-  Stopwatch watch;
-  RankReport report;
-  Scene scene = Load(world, options);
-  report.load_s = watch.Lap();
-  if (!options.write_scene.empty()) {
-    OnRank(world, 0, [&] { WriteNff(scene, options.write_scene); });
-    if (world.rank == 0)
-      fmt::print("wrote {}: {} objects\n", options.write_scene, scene.shapes.objects.size());
-  } else if (options.precision == "float") {
-    RenderAndReport<float>(world, scene, options, report);
-  } else {
-    RenderAndReport<double>(world, scene, options, report);
-  }
+  if (!options.write_scene.empty())
+    OnRank(world, 0, [&] { WriteScene(options); });
+  else if (options.precision == "float")
+    RenderAndReport<float>(world, options);
+  else
+    RenderAndReport<double>(world, options);
 }
 
 int Run(const World& world, int argc, char** argv) {
