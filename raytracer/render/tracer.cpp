@@ -7,6 +7,7 @@
 
 #include "raytracer/geometry/convert.h"
 #include "raytracer/geometry/surface.h"
+#include "raytracer/render/offset.h"
 
 namespace stipple::raytracer {
 namespace {
@@ -87,9 +88,7 @@ typename Tracer<Real>::Surface Tracer<Real>::SurfaceAt(const Ray<Real>& ray,
   surface.leaving = Dot(ray.direction, normals.face) > 0;
   surface.face = surface.leaving ? -normals.face : normals.face;
   surface.normal = surface.leaving ? -normals.shading : normals.shading;
-  // Relative to the size of the numbers at hand, so that a scene may be scaled or moved; a fixed
-  // distance may not.
-  surface.offset = 32 * kernel_.Rounding() * std::max(MaxNorm(surface.point), hit.t);
+  surface.offset = SurfaceOffset(surface.point, hit.t, kernel_.Rounding());
   return surface;
 }
 
