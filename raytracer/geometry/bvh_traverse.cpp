@@ -7,6 +7,7 @@
 #include "raytracer/geometry/embree_kernel.h"
 #include "raytracer/geometry/intersect.h"
 #include "raytracer/geometry/kernel.h"
+#include "raytracer/geometry/patch.h"
 
 namespace stipple::raytracer {
 namespace {
@@ -23,7 +24,8 @@ struct Walk {
         ray(with),
         shear(all.triangles.empty() ? ShearRay<Real>() : ShearRay<Real>(with)) {}
 
-  TriangleHit<Real> Meet(const BvhEntry& entry) const {
+  /// `max_t`: patches need not be met farther out.
+  TriangleHit<Real> Meet(const BvhEntry& entry, Real max_t) const {
     switch (entry.kind) {
       case ShapeKind::kSphere:
         return {IntersectSphere(model.spheres[entry.index], ray), 0, 0};
@@ -36,8 +38,10 @@ struct Walk {
         const std::span outline(model.outlines.data() + polygon.first_vertex, polygon.vertex_count);
         return {IntersectPolygon(polygon, outline, ray), 0, 0};
       }
-      case ShapeKind::kPatch:
-        break;
+      case ShapeKind::kPatch: {
+        const PatchHit<Real> hit = IntersectPatch(model.patches[entry.index], ray, max_t);
+        return {hit.t, hit.u, hit.v};
+      }
     }
     return {kMiss<Real>, 0, 0};
   }
@@ -124,7 +128,7 @@ class ScalarKernel final : public Kernel<Real> {
       }
       const BvhEntry* const entries = model_.entries.data() + model_.nodes[node].first;
       for (std::uint32_t i = 0; i < model_.nodes[node].count; ++i) {
-        const TriangleHit<Real> met = walk.Meet(entries[i]);
+        const TriangleHit<Real> met = walk.Meet(entries[i], best.t);
         if (met.t < best.t ||
             (met.t == best.t && entries[i].object < best.object && met.t != kMiss<Real>))
           best = {met.t, entries[i].object, met.u, met.v};
@@ -157,7 +161,7 @@ class ScalarKernel final : public Kernel<Real> {
       }
       const BvhEntry* const entries = model_.entries.data() + model_.nodes[node].first;
       for (std::uint32_t i = 0; i < model_.nodes[node].count && !found; ++i) {
-        found = walk.Meet(entries[i]).t < max_t;
+        found = walk.Meet(entries[i], max_t).t < max_t;
         ++primitive_tests;
       }
       more = NextNode(stack, depth, Far(max_t), node);
