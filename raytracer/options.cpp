@@ -183,6 +183,8 @@ Options ParseOptions(int argc, const char* const* argv) {
   if (!unknown.empty())
     throw UsageError(
         fmt::format("{}: unknown option; known are{}", unknown.front(), KnownOptions()));
+  if (options.kernel == "embree" && !options.cost_map.empty())
+    throw UsageError("--cost-map with --kernel embree: Embree does not count its tests");
   return options;
 }
 

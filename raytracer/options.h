@@ -60,9 +60,10 @@ struct OptionSpec {
 inline constexpr double kMostPoints = 1e9;
 
 inline constexpr OptionSpec kOptions[] = {
-    {"scene", &Options::scene, "balls|rings|teapot|tree|FILE.nff", "what to render"},
+    {"scene", &Options::scene, "balls|rings|teapot|teapot-patches|tree|FILE.nff", "what to render"},
     {"scene-size", &Options::scene_size, "N",
-     "size of a generated scene (balls 4, rings 7, teapot 12, tree 11)", 0, 100000},
+     "size of a generated scene (balls 4, rings 7, teapot and teapot-patches 12, tree 11)", 0,
+     100000},
     {"object-limit", &Options::object_limit, "N",
      "keep only N objects: of balls the largest, else the first (all)", 1, kMostPoints},
     {"camera", &Options::camera, "default|side|above|FILE",

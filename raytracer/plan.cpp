@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <numeric>
 #include <span>
 #include <string_view>
@@ -193,27 +192,6 @@ template SceneFacts FactsOf(const Scene&, Model<float>&);
 template SceneFacts FactsOf(const Scene&, Model<double>&);
 template SceneFacts FactsOf(const Scene&, Model<long double>&);
 
-/// What a shape and its share of the hierarchy take in a model, by kind; from above, as the models
-/// of the four scenes at all sizes have them.
-constexpr std::uint64_t kModelBytes[] = {110, 190, 170, 400, 500};
-
-std::uint64_t BytesToBuild(const Shapes& shapes) {
-  std::uint64_t bytes = 0;
-  const auto take = [&bytes](const auto& list) { bytes += list.capacity() * sizeof(list[0]); };
-  take(shapes.objects);
-  take(shapes.spheres);
-  take(shapes.cones);
-  take(shapes.triangles);
-  take(shapes.polygons);
-  take(shapes.patches);
-  take(shapes.vertices);
-  take(shapes.outlines);
-  take(shapes.normals);
-  for (const Object& object : shapes.objects)
-    bytes += kModelBytes[static_cast<std::size_t>(object.kind)];
-  return bytes + shapes.normals.size() * sizeof(Vec3);
-}
-
 double FloatError(const SceneFacts& facts) { return facts.reach / facts.smallest * 0x1p-24 * 32; }
 
 void RequireDigits(const SceneFacts& facts, const Options& options) {
@@ -226,24 +204,6 @@ void RequireDigits(const SceneFacts& facts, const Options& options) {
 }
 
 int DepthFor(const SceneFacts& facts, int wanted) { return facts.mirrors ? wanted : 1; }
-
-std::uint64_t AvailableBytes() {
-  std::ifstream file("/proc/meminfo");
-  std::string word;
-  while (file >> word)
-    if (std::uint64_t kib = 0; word == "MemAvailable:" && file >> kib) return kib * 1024;
-  return std::numeric_limits<std::uint64_t>::max();
-}
-
-void RequireMemory(const Shapes& shapes, std::uint64_t limit) {
-  const std::uint64_t needed = BytesToBuild(shapes);
-  const std::uint64_t allowed = limit > 0 ? limit : AvailableBytes();
-  if (needed <= allowed) return;
-  throw UsageError(fmt::format(
-      "the scene does not fit: {} objects take about {} MB while they are made ready, {} {} MB",
-      shapes.objects.size(), needed / 1000000, limit > 0 ? "--memory-limit is" : "this node has",
-      allowed / 1000000));
-}
 
 std::string Explanation(const SceneFacts& facts, const Options& options) {
   std::string text = fmt::format("Plan for {} objects:\n", facts.Objects());

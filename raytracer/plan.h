@@ -52,16 +52,6 @@ void RequireDigits(const SceneFacts& facts, const Options& options);
 /// Rays one after another that the scene needs, at most `wanted`: 1 if no material sends any on.
 int DepthFor(const SceneFacts& facts, int wanted);
 
-/// Bytes that these shapes and their model take while it is built, an estimate from above.
-std::uint64_t BytesToBuild(const Shapes& shapes);
-
-/// Bytes that processes on this node can still get (MemAvailable of /proc/meminfo), or the largest
-/// number where that is not known.
-std::uint64_t AvailableBytes();
-
-/// Errors: UsageError if the scene does not fit; `limit` 0 stands for what the node has.
-void RequireMemory(const Shapes& shapes, std::uint64_t limit);
-
 /// Text of --explain: a line per decision, what was decided first, then the reason in numbers.
 std::string Explanation(const SceneFacts& facts, const Options& options);
 

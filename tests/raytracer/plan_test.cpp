@@ -15,6 +15,7 @@
 #include "raytracer/render/picture.h"
 #include "raytracer/render/sampling.h"
 #include "raytracer/scene/generate.h"
+#include "raytracer/scene/memory_need.h"
 
 namespace stipple::raytracer {
 namespace {

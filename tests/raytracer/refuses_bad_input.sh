@@ -34,4 +34,5 @@ refuse 'coordinates and distances reach' "$raytracer" --precision float
 refuse 'the scene does not fit: 7382 objects' "$raytracer" --memory-limit 100K
 refuse '--memory-limit 1X: should be BYTES' "$raytracer" --memory-limit 1X
 refuse 'none.png: cannot be read' "$raytracer" --compare none.png none.png
+refuse 'Embree does not count its tests' "$raytracer" --kernel embree --cost-map x.png
 echo "all refused"
