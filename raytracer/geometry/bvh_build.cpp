@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Top-down construction. A range of boxes is split where bins of centres along one axis promise the
-// smallest expected cost (area x blocks of four objects, on both sides). A node begins as one
+// smallest expected cost (area x objects, on both sides). A node begins as one
 // range, and the largest of its ranges is split until there are eight or none is worth it.
 //
 // Speed comes from touching memory little: boxes are 32 bytes, partitioned in place, and the pass
@@ -26,7 +26,7 @@ Four Greatest(Four a, Four b) { return a > b ? a : b; }
 
 constexpr int kMaxBins = 16;
 // Of what testing a block of four objects costs: opening one more box.
-constexpr float kBoxCost = 0.4F;
+constexpr float kBoxCost = 1.0F;
 constexpr float kFar = std::numeric_limits<float>::infinity();
 // Deeper ranges are halved by count: at most 32 levels more.
 constexpr int kMaxHeuristicDepth = static_cast<int>(kMaxBvhDepth) - 40;
@@ -99,8 +99,8 @@ struct Split {
   float cost = 0;
 };
 
-/// Blocks that `count` objects need.
-float BlocksOf(std::uint32_t count) { return static_cast<float>((count + kLanes - 1) / kLanes); }
+/// Cost of testing `count` objects: their share of blocks. (Counting whole blocks was no faster.)
+float CostOf(std::uint32_t count) { return static_cast<float>(count) / kLanes; }
 
 class Builder {
  public:
@@ -141,9 +141,9 @@ class Builder {
   }
 
   static void SetBox(WideNode& node, std::size_t child, const Box& box) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      node.side[0][axis][child] = box.low[axis];
-      node.side[1][axis][child] = box.high[axis];
+    for (std::uint32_t axis = 0; axis < 3; ++axis) {
+      node.side[WideNode::SideAt(0, axis) + child] = box.low[axis];
+      node.side[WideNode::SideAt(1, axis) + child] = box.high[axis];
     }
   }
 
@@ -178,12 +178,18 @@ class Builder {
     return true;
   }
 
+  /// Of the kind of its first object: are four tested at once?
+  bool InBlocks(const Range& range) const {
+    const ShapeKind kind = boxes_[range.begin].kind;
+    return kind != ShapeKind::kPolygon && kind != ShapeKind::kPatch;
+  }
+
   /// Moves a part of the range to `right`; false if it is best left whole.
   bool Divide(Range& range, Range& right) {
     if (range.size() == 1) return false;
     const bool small = range.size() <= ChildRef::kMaxLeafObjects;
     const bool can_be_leaf = small && OfOneKind(range);
-    if (small && range.size() <= kLanes && !can_be_leaf) {
+    if (small && !can_be_leaf) {
       const ShapeKind kind = boxes_[range.begin].kind;
       Partition(range, right, [&](const BoxedObject& object) { return object.kind == kind; });
       return true;
@@ -192,8 +198,8 @@ class Builder {
     const Split split = range.depth < kMaxHeuristicDepth ? BestSplit(range, binning) : Split{};
     if (can_be_leaf) {
       const float area = range.box.HalfArea();
-      if (split.axis < 0 || BlocksOf(range.size()) * area <= split.cost + kBoxCost * area)
-        return false;
+      const float together = CostOf(range.size()) * (InBlocks(range) ? 1 : kLanes);
+      if (split.axis < 0 || together * area <= split.cost + kBoxCost * area) return false;
     }
     if (split.axis < 0) {
       Halve(range, right);
@@ -266,7 +272,7 @@ class Builder {
       box.Include(boxes[bin]);
       count += counts[bin];
       right_count[bin] = count;
-      right_cost[bin] = count == 0 ? 0 : box.HalfArea() * BlocksOf(count);
+      right_cost[bin] = count == 0 ? 0 : box.HalfArea() * CostOf(count);
     }
     box = {};
     count = 0;
@@ -274,7 +280,7 @@ class Builder {
       box.Include(boxes[bin - 1]);
       count += counts[bin - 1];
       if (count == 0 || right_count[bin] == 0) continue;
-      const float cost = box.HalfArea() * BlocksOf(count) + right_cost[bin];
+      const float cost = box.HalfArea() * CostOf(count) + right_cost[bin];
       if (best.axis < 0 || cost < best.cost) best = {axis, bin, cost};
     }
   }
@@ -282,8 +288,7 @@ class Builder {
   ChildRef AddLeaf(const Range& range) {
     const ShapeKind kind = boxes_[range.begin].kind;
     std::vector<std::uint32_t>& numbers = tree_.numbers[static_cast<std::size_t>(kind)];
-    const bool in_blocks = kind != ShapeKind::kPolygon && kind != ShapeKind::kPatch;
-    const std::uint32_t lanes = in_blocks ? kLanes : 1;
+    const std::uint32_t lanes = InBlocks(range) ? kLanes : 1;
     const auto first = static_cast<std::uint32_t>(numbers.size()) / lanes;
     if (first >= ChildRef::kMaxPlaces)
       throw InputError("scene", 0, "too many objects for one hierarchy");

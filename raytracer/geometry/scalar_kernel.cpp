@@ -25,11 +25,11 @@ class ScalarTests {
     for (unsigned child = 0; child < kMaxChildren; ++child) {
       float begin = kEarliest, end = limit;
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const std::size_t near_side = box_ray_.near_side[axis];
-        begin = std::max(begin, (node.side[near_side][axis][child] - box_ray_.near_origin[axis]) *
-                                    box_ray_.near_inverse[axis]);
-        end = std::min(end, (node.side[1 - near_side][axis][child] - box_ray_.far_origin[axis]) *
-                                box_ray_.far_inverse[axis]);
+        const float near_side = node.side[box_ray_.near_side[axis] + child];
+        const float far_side = node.side[box_ray_.far_side[axis] + child];
+        begin =
+            std::max(begin, (near_side - box_ray_.near_origin[axis]) * box_ray_.near_inverse[axis]);
+        end = std::min(end, (far_side - box_ray_.far_origin[axis]) * box_ray_.far_inverse[axis]);
       }
       enter[child] = begin;
       met |= begin <= end ? 1U << child : 0U;

@@ -80,12 +80,12 @@ class VectorTests {
 
   HWY_INLINE unsigned Boxes(const WideNode& node, float limit, float (&enter)[kMaxChildren]) const {
     const BoxLanes d;
-    const float* const near_x = node.side[box_ray_.near_side[0]][0];
-    const float* const near_y = node.side[box_ray_.near_side[1]][1];
-    const float* const near_z = node.side[box_ray_.near_side[2]][2];
-    const float* const far_x = node.side[1 - box_ray_.near_side[0]][0];
-    const float* const far_y = node.side[1 - box_ray_.near_side[1]][1];
-    const float* const far_z = node.side[1 - box_ray_.near_side[2]][2];
+    const float* const near_x = node.side + box_ray_.near_side[0];
+    const float* const near_y = node.side + box_ray_.near_side[1];
+    const float* const near_z = node.side + box_ray_.near_side[2];
+    const float* const far_x = node.side + box_ray_.far_side[0];
+    const float* const far_y = node.side + box_ray_.far_side[1];
+    const float* const far_z = node.side + box_ray_.far_side[2];
     unsigned met = 0;
     for (std::size_t i = 0; i < kMaxChildren; i += hn::MaxLanes(d)) {
       const BoxV x0 = Slab(near_x + i, near_x_, box_ray_.near_inverse[0]);

@@ -19,6 +19,7 @@
 
 #include "raytracer/geometry/intersect.h"
 #include "raytracer/geometry/kernel.h"
+#include "raytracer/geometry/patch.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace stipple::raytracer {
@@ -36,25 +37,29 @@ HWY_INLINE std::uint64_t LastWithin(float limit) {
   return std::uint64_t{std::bit_cast<std::uint32_t>(limit)} << 32 | 0xffffffffU;
 }
 
-template <class Real>
-HWY_INLINE Ray<double> InDouble(const Ray<Real>& ray) {
-  return {{static_cast<double>(ray.origin.x), static_cast<double>(ray.origin.y),
-           static_cast<double>(ray.origin.z)},
-          {static_cast<double>(ray.direction.x), static_cast<double>(ray.direction.y),
-           static_cast<double>(ray.direction.z)}};
-}
-
 /// Relative error of the arithmetic that rays and primitives are computed in.
 template <class Real>
 inline constexpr double kRounding =
     std::max(static_cast<double>(std::numeric_limits<Real>::epsilon()),
              std::numeric_limits<double>::epsilon());
 
-/// Polygons and patches, one by one.
+/// Not inline: the compiler would keep less at hand and compute the rest anew for each node.
+template <class Real>
+HWY_NOINLINE BoxRay ReadyForBoxes(const Frame& frame, const Ray<Real>& ray) {
+  const auto in_double = [](Vec<Real> v) HWY_ATTR {
+    return Vec3{static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+  };
+  return BoxRay(frame, {in_double(ray.origin), in_double(ray.direction)}, kRounding<Real>);
+}
+
+/// Polygons and patches, one by one. Patches need not be met farther out than `max_t`.
 template <class Real>
 HWY_INLINE TriangleHit<Real> MeetSingle(const Model<Real>& model, const Ray<Real>& ray,
-                                        ShapeKind kind, std::uint32_t slot) {
-  if (kind != ShapeKind::kPolygon) return {kMiss<Real>, 0, 0};
+                                        ShapeKind kind, std::uint32_t slot, Real max_t) {
+  if (kind == ShapeKind::kPatch) {
+    const PatchHit<Real> hit = IntersectPatch(model.patches[slot], ray, max_t);
+    return {hit.t, hit.u, hit.v};
+  }
   const Polygon<Real>& polygon = model.polygons[slot];
   const std::span outline(model.outlines.data() + polygon.first_vertex, polygon.vertex_count);
   return {IntersectPolygon(polygon, outline, ray), 0, 0};
@@ -73,7 +78,7 @@ class Walk {
   using Real = typename Tests::Number;
 
   Walk(const Model<Real>& model, const Ray<Real>& ray)
-      : model_(model), ray_(ray), box_ray_(model.frame[0], InDouble(ray), kRounding<Real>) {}
+      : model_(model), ray_(ray), box_ray_(ReadyForBoxes(model.frame[0], ray)) {}
 
   HWY_INLINE Hit<Real> Nearest(TestCounts& counts) {
     Hit<Real> best;
@@ -152,7 +157,7 @@ class Walk {
     const Array<std::uint32_t>& numbers = model_.numbers[static_cast<std::size_t>(kind)];
     if (kind == ShapeKind::kPolygon || kind == ShapeKind::kPatch) {
       for (std::uint32_t i = 0; i < objects; ++i)
-        Keep(MeetSingle(model_, ray_, kind, first + i), numbers[first + i], best);
+        Keep(MeetSingle(model_, ray_, kind, first + i, best.t), numbers[first + i], best);
     } else {
       for (std::uint32_t done = 0; done < objects; done += kLanes)
         tests.NearestInBlock(kind, first + done / kLanes, numbers.data(), best);
@@ -186,7 +191,7 @@ class Walk {
     if (kind == ShapeKind::kPolygon || kind == ShapeKind::kPatch) {
       for (std::uint32_t i = 0; i < objects; ++i) {
         ++primitive_tests_;
-        if (MeetSingle(model_, ray_, kind, first + i).t < max_t) return true;
+        if (MeetSingle(model_, ray_, kind, first + i, max_t).t < max_t) return true;
       }
       return false;
     }

@@ -58,8 +58,13 @@ class ChildRef {
 
 /// Boxes without a child begin at infinity and end at minus infinity: no ray meets them.
 struct alignas(32) WideNode {
-  float side[2][3][kMaxChildren];  // low and high sides along x, y, z, in the frame
+  float side[2 * 3 * kMaxChildren];  // low sides along x, y, z, then high sides, in the frame
   ChildRef child[kMaxChildren];
+
+  /// Where a side begins; `high` is 0 or 1.
+  static std::uint32_t SideAt(std::uint32_t high, std::uint32_t axis) {
+    return (3 * high + axis) * kMaxChildren;
+  }
 };
 static_assert(sizeof(WideNode) == 224);
 
@@ -80,21 +85,24 @@ struct BoxRay {
     constexpr double kRayLeast = 1e-18;
     constexpr double kFloatError = 0x1p-23;  // and a little: a rounding is half of it
     constexpr double kWiden = 1 + 16 * 0x1p-24;
-    start = EntersAt(frame.box, ray);
+    start = EntersAt(frame.box, ray, rounding);
     const Vec3 from = (ray.origin - frame.middle + ray.direction * start) * scale;
     slack = 8 * rounding * scale * (MaxNorm(ray.origin) + MaxNorm(frame.middle) + start) + 0x1p-40;
     relative = 1 + 0x1p-20 + 32 * rounding;
     const double origin[3] = {from.x, from.y, from.z};
     const double direction[3] = {ray.direction.x, ray.direction.y, ray.direction.z};
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
-      const bool down = direction[axis] < 0;
-      const double size = std::max(std::abs(direction[axis]), kRayLeast);
-      const double error = slack + kFloatError * std::abs(origin[axis]);
-      near_origin[axis] = static_cast<float>(down ? origin[axis] - error : origin[axis] + error);
-      far_origin[axis] = static_cast<float>(down ? origin[axis] + error : origin[axis] - error);
-      near_inverse[axis] = 1 / static_cast<float>(down ? -size : size);
+      // No branches: directions change from ray to ray.
+      const double d = direction[axis];
+      const double away = std::copysign(slack + kFloatError * std::abs(origin[axis]), d);
+      const double along = std::copysign(std::max(std::abs(d), kRayLeast), d);
+      near_origin[axis] = static_cast<float>(origin[axis] + away);
+      far_origin[axis] = static_cast<float>(origin[axis] - away);
+      near_inverse[axis] = 1 / static_cast<float>(along);
       far_inverse[axis] = near_inverse[axis] * static_cast<float>(kWiden);
-      near_side[axis] = down ? 1 : 0;
+      const auto down = static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(d) >> 63);
+      near_side[axis] = WideNode::SideAt(down, axis);
+      far_side[axis] = WideNode::SideAt(1 - down, axis);
     }
   }
 
@@ -105,17 +113,19 @@ struct BoxRay {
 
   float near_origin[3], far_origin[3];
   float near_inverse[3], far_inverse[3];
-  std::uint32_t near_side[3];  // of WideNode::side
-  double start;                // infinite if the ray does not meet the scene
+  std::uint32_t near_side[3], far_side[3];  // where they begin in WideNode::side
+  double start;                             // infinite if the ray does not meet the scene
   double scale;
   double slack, relative;
 
  private:
-  static double EntersAt(const Bounds& box, const Ray<double>& ray) {
+  static double EntersAt(const Bounds& box, const Ray<double>& ray, double rounding) {
     const Vec3 o = ray.origin;
     const bool inside = o.x >= box.low.x && o.x <= box.high.x && o.y >= box.low.y &&
                         o.y <= box.high.y && o.z >= box.low.z && o.z <= box.high.z;
-    return inside ? 0 : EnterBounds(box, SlabRay(ray), std::numeric_limits<double>::max());
+    return inside ? 0
+                  : EnterBounds(box, SlabRay(ray, 1 + 32 * rounding),
+                                std::numeric_limits<double>::max());
   }
 };
 

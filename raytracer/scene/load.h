@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "raytracer/scene/scene.h"
 
@@ -19,6 +20,15 @@ struct SceneChoice {
 
 /// Errors: InputError for files, UsageError for a size or view that the scene does not have.
 Scene LoadScene(const SceneChoice& choice);
+
+// Its steps, for who can spare some.
+
+/// The text of the scene's file; empty if the scene is generated.
+std::string TextOf(const SceneChoice& choice);
+/// With the scene's own view.
+Scene SceneFrom(const SceneChoice& choice, std::string_view text);
+/// The chosen one; `own`: the scene's.
+View ViewOf(const SceneChoice& choice, const View& own);
 
 }  // namespace stipple::raytracer
 

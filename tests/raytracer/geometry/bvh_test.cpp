@@ -163,8 +163,10 @@ void ExpectContained(const Model<double>& model, const Shapes& shapes, ChildRef 
   }
   const WideNode& node = model.nodes[at.Node()];
   for (std::uint32_t i = 0; i < at.Children(); ++i) {
-    const auto side = [&](int s) {
-      return Vec3{node.side[s][0][i], node.side[s][1][i], node.side[s][2][i]};
+    const auto side = [&](std::uint32_t high) {
+      return Vec3{node.side[WideNode::SideAt(high, 0) + i],
+                  node.side[WideNode::SideAt(high, 1) + i],
+                  node.side[WideNode::SideAt(high, 2) + i]};
     };
     ExpectContained(model, shapes, node.child[i],
                     {Max(outer.low, side(0)), Min(outer.high, side(1))}, objects);
