@@ -19,6 +19,7 @@
 #include "raytracer/report.h"
 #include "raytracer/scene/load.h"
 #include "raytracer/scene/nff.h"
+#include "raytracer/scene/patches.h"
 
 namespace stipple::raytracer {
 namespace {
@@ -79,6 +80,7 @@ template <class Real>
 Model<Real> Build(const World& world, Scene& scene, const Options& options) {
   Mark(Moment::kBuildBegins);
   return OnAllRanks(world, [&] {
+    AdaptPatches(scene, options.patches);
     return BuildModel<Real>(std::move(scene.shapes), HierarchyFor(options.kernel));
   });
 }
