@@ -19,37 +19,14 @@
 #include "raytracer/report.h"
 #include "raytracer/scene/load.h"
 #include "raytracer/scene/nff.h"
-#include "raytracer/scene/patches.h"
+#include "raytracer/scene/shared_scene.h"
+#include "raytracer/stopwatch.h"
 
 namespace stipple::raytracer {
 namespace {
 
 constexpr int kDifferent = 1;  // exit status of --compare
 constexpr int kUnusable = 2;   // exit status after InputError and UsageError
-
-/// Seconds since it was made or last asked: of the clock on the wall, and of CPU time of the
-/// process.
-class Stopwatch {
- public:
-  double Lap() {
-    const double now = MPI_Wtime();
-    return now - std::exchange(start_, now);
-  }
-  double LapCpu() {
-    const double now = CpuSeconds();
-    return now - std::exchange(cpu_start_, now);
-  }
-
- private:
-  static double CpuSeconds() {
-    timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-  }
-
-  double start_ = MPI_Wtime();
-  double cpu_start_ = CpuSeconds();
-};
 
 int PrintComparison(const Options& options) {
   const Image a = ReadPng(options.compare.first);
@@ -67,29 +44,16 @@ int PrintComparison(const Options& options) {
   return difference.Identical() ? 0 : kDifferent;
 }
 
-Scene Load(const World& world, const Options& options) {
-  Mark(Moment::kLoadBegins);
-  const SceneChoice choice{options.scene, options.scene_size,
-                           static_cast<std::uint64_t>(options.object_limit), options.camera};
-  Scene scene = OnAllRanks(world, [&] { return LoadScene(choice); });
-  if (options.resolution.width > 0) scene.view.resolution = options.resolution;
-  return scene;
-}
-
-template <class Real>
-Model<Real> Build(const World& world, Scene& scene, const Options& options) {
-  Mark(Moment::kBuildBegins);
-  return OnAllRanks(world, [&] {
-    AdaptPatches(scene, options.patches);
-    return BuildModel<Real>(std::move(scene.shapes), HierarchyFor(options.kernel));
-  });
-}
-
 template <class Real>
 std::uint64_t BytesOf(Model<Real>& model) {
   std::uint64_t bytes = 0;
   model.ForEachArray([&bytes](const auto& array) { bytes += array.size() * sizeof(array[0]); });
   return bytes;
+}
+
+SceneChoice ChoiceOf(const Options& options) {
+  return {options.scene,  options.scene_size, static_cast<std::uint64_t>(options.object_limit),
+          options.camera, options.resolution, options.patches};
 }
 
 template <class Real>
@@ -138,37 +102,46 @@ void OnRank(const World& world, int rank, Work work) {
 }
 
 template <class Real>
-void RenderAndReport(const World& world, Scene& scene, const Options& options, RankReport report) {
+void RenderAndReport(const World& world, const Options& options) {
+  SharedScene<Real> shared =
+      SceneForAll<Real>(world, ChoiceOf(options), HierarchyFor(options.kernel));
+  Scene& scene = shared.scene;
+  RankReport report;
+  report.load_s = shared.load_s;
+  report.build_s = shared.build_s;
+  report.build_cpu_s = shared.build_cpu_s;
   Stopwatch watch;
-  Model<Real> model = Build<Real>(world, scene, options);
-  const auto kernel = OnAllRanks(world, [&] { return MakeKernel(options.kernel, model); });
-  report.build_s = watch.Lap();
-  report.build_cpu_s = watch.LapCpu();
-  const Rendered rendered = RenderScene(world, scene, model, *kernel, options);
+  const auto kernel = OnAllRanks(world, [&] { return MakeKernel(options.kernel, shared.model); });
+  report.build_s += watch.Lap();
+  report.build_cpu_s += watch.LapCpu();
+  const Rendered rendered = RenderScene(world, scene, shared.model, *kernel, options);
   report.render_s = watch.Lap();
   report.render_cpu_s = watch.LapCpu();
   report.counts = rendered.counts;
   report.messages = rendered.messages;
   OnRank(world, AssemblingRank(world, options.partition),
          [&] { WritePictures(rendered.raster, scene.view.resolution, options); });
-  const RunReport run{model.objects.size(), BytesOf(model), GatherReports(world, report)};
-  OnRank(world, 0, [&] { WriteReport(run, options); });
+  const RunReport run{shared.model.objects.size(), BytesOf(shared.model),
+                      GatherReports(world, report)};
+  OnRank(world, 0, [&] {
+    WriteReport(run, options);
+    if (!shared.kept_in.empty()) fmt::print("  scene from {}\n", shared.kept_in);
+  });
+}
+
+void WriteScene(const Options& options) {
+  const Scene scene = LoadScene(ChoiceOf(options));
+  WriteNff(scene, options.write_scene);
+  fmt::print("wrote {}: {} objects\n", options.write_scene, scene.shapes.objects.size());
 }
 
 void LoadAndRender(const World& world, const Options& options) {
-  Stopwatch watch;
-  RankReport report;
-  Scene scene = Load(world, options);
-  report.load_s = watch.Lap();
-  if (!options.write_scene.empty()) {
-    OnRank(world, 0, [&] { WriteNff(scene, options.write_scene); });
-    if (world.rank == 0)
-      fmt::print("wrote {}: {} objects\n", options.write_scene, scene.shapes.objects.size());
-  } else if (options.precision == "float") {
-    RenderAndReport<float>(world, scene, options, report);
-  } else {
-    RenderAndReport<double>(world, scene, options, report);
-  }
+  if (!options.write_scene.empty())
+    OnRank(world, 0, [&] { WriteScene(options); });
+  else if (options.precision == "float")
+    RenderAndReport<float>(world, options);
+  else
+    RenderAndReport<double>(world, options);
 }
 
 int Run(const World& world, int argc, char** argv) {

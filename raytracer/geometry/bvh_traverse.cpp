@@ -56,11 +56,17 @@ Ray<double> InDouble(const Ray<Real>& ray) {
   return {rounded(ray.origin), rounded(ray.direction)};
 }
 
-/// A distance for box tests, no smaller than `t`.
+/// Wider than the roundings of box tests and of intersections in `Real`.
+template <class Real>
+constexpr double kWiden = 1 +
+                          16 * std::max(std::numeric_limits<double>::epsilon(),
+                                        static_cast<double>(std::numeric_limits<Real>::epsilon()));
+
+/// A distance for box tests: no box that begins where an object at `t` lies is behind it. (Objects
+/// at the same distance are decided by their numbers, so all have to be looked at.)
 template <class Real>
 double Far(Real t) {
-  const auto rounded = static_cast<double>(t);
-  return static_cast<Real>(rounded) < t ? std::nextafter(rounded, kMiss<double>) : rounded;
+  return static_cast<double>(t) * kWiden<Real>;
 }
 
 struct Pending {
@@ -86,8 +92,8 @@ template <class Model>
 inline bool Descend(const Model& model, const SlabRay& slab, double max_t,
                     std::array<Pending, kMaxBvhDepth>& stack, int& depth, std::uint32_t& node) {
   const std::uint32_t left = model.nodes[node].first;
-  const double left_enter = EnterBounds(model.nodes[left].bounds, slab, Far(max_t));
-  const double right_enter = EnterBounds(model.nodes[left + 1].bounds, slab, Far(max_t));
+  const double left_enter = EnterBounds(model.nodes[left].bounds, slab, max_t);
+  const double right_enter = EnterBounds(model.nodes[left + 1].bounds, slab, max_t);
   const bool left_first = left_enter <= right_enter;
   const double near_enter = left_first ? left_enter : right_enter;
   const double far_enter = left_first ? right_enter : left_enter;
@@ -106,7 +112,7 @@ class ScalarKernel final : public Kernel<Real> {
   [[gnu::noinline]] Hit<Real> Intersect(const Ray<Real>& ray, TestCounts& tests) const override {
     Hit<Real> best;
     if (model_.nodes.empty()) return best;
-    const SlabRay slab(InDouble(ray));
+    const SlabRay slab(InDouble(ray), kWiden<Real>);
     const Walk<Real> walk(model_, ray);
     std::array<Pending, kMaxBvhDepth> stack;
     int depth = 0;
@@ -138,7 +144,7 @@ class ScalarKernel final : public Kernel<Real> {
   [[gnu::noinline]] bool Occluded(const Ray<Real>& ray, Real max_t,
                                   TestCounts& tests) const override {
     if (model_.nodes.empty()) return false;
-    const SlabRay slab(InDouble(ray));
+    const SlabRay slab(InDouble(ray), kWiden<Real>);
     const Walk<Real> walk(model_, ray);
     std::array<Pending, kMaxBvhDepth> stack;
     int depth = 0;

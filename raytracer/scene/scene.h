@@ -46,7 +46,7 @@ struct Scene {
   std::vector<Light> lights;
   std::vector<Material> materials;
   Shapes shapes;
-  PatchChoice patches;
+  PatchChoice patches{};
 };
 
 /// Keeps `limit` objects: the largest spheres first (objects that are no spheres count as largest),
