@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "raytracer/errors.h"
+#include "raytracer/scene/patches.h"
 
 namespace stipple::raytracer {
 namespace {
@@ -48,13 +49,13 @@ template <class Real>
 void TakeObject(const Model<Real>& model, const Object& object, Measure& measure) {
   switch (object.kind) {
     case ShapeKind::kSphere: {
-      const Sphere<Real>& sphere = model.spheres[object.index];
+      const Sphere<Real> sphere = model.SphereAt(object.index);
       const double radius = std::abs(ToDouble(sphere.radius));
       measure.Point(ToDouble(sphere.center), radius);
       return measure.Feature(radius);
     }
     case ShapeKind::kCone: {
-      const Cone<Real>& cone = model.cones[object.index];
+      const Cone<Real> cone = model.ConeAt(object.index);
       const double base = std::abs(ToDouble(cone.base_radius));
       const double apex = std::abs(ToDouble(cone.apex_radius));
       measure.Point(ToDouble(cone.base), base);
@@ -63,7 +64,8 @@ void TakeObject(const Model<Real>& model, const Object& object, Measure& measure
       return measure.Feature(ToDouble(cone.height));
     }
     case ShapeKind::kTriangle: {
-      const auto& corner = model.triangles[object.index].corner;
+      const Triangle<Real> triangle = model.TriangleAt(object.index);
+      const auto& corner = triangle.corner;
       Vec3 corners[3];
       for (int i = 0; i < 3; ++i)
         corners[i] = {ToDouble(corner[i][0]), ToDouble(corner[i][1]), ToDouble(corner[i][2])};
@@ -108,6 +110,19 @@ Decision Shape(const SceneFacts& facts, const Options&) {
                       "as triangles they would take 1000 times the memory for a worse picture",
                       facts.CountOf(ShapeKind::kSphere), facts.CountOf(ShapeKind::kCone),
                       facts.CountOf(ShapeKind::kTriangle), facts.CountOf(ShapeKind::kPolygon))};
+}
+
+Decision Patches(const SceneFacts& facts, const Options& options) {
+  const PatchChoice& patches = facts.patches;
+  if (patches.patches == 0) return {"none", "the scene has no Bezier patches"};
+  const std::string needed =
+      fmt::format("{} cells a side would keep the triangles of {} patches within {} pixel",
+                  patches.cells_needed, patches.patches, kPatchErrorPixels);
+  const std::string_view asked = options.patches == "auto" ? "" : "as asked; ";
+  if (patches.cells == 0)
+    return {"met directly", fmt::format("{}{}; up to {} are made", asked, needed, kMostPatchCells)};
+  return {fmt::format("{0} x {0} cells", patches.cells),
+          fmt::format("{}off by {:.2g} pixel; {}", asked, patches.error_pixels, needed)};
 }
 
 Decision SamplesOfPixel(const SceneFacts&, const Options& options) {
@@ -158,9 +173,9 @@ struct DecisionRow {
   Decision (*decide)(const SceneFacts&, const Options&);
 };
 constexpr DecisionRow kDecisions[] = {
-    {"precision", Precision}, {"shapes", Shape},    {"samples", SamplesOfPixel},
-    {"depth", Depth},         {"shading", Shading}, {"hierarchy", Hierarchy},
-    {"rays", RayGroups},      {"memory", Memory},
+    {"precision", Precision},    {"shapes", Shape},   {"patches", Patches},
+    {"samples", SamplesOfPixel}, {"depth", Depth},    {"shading", Shading},
+    {"hierarchy", Hierarchy},    {"rays", RayGroups}, {"memory", Memory},
 };
 
 }  // namespace
@@ -179,6 +194,7 @@ SceneFacts FactsOf(const Scene& scene, Model<Real>& model) {
   }
   model.ForEachArray(
       [&](const auto& array) { facts.model_bytes += array.size() * sizeof(array[0]); });
+  facts.patches = scene.patches;
   for (const Material& material : scene.materials) {
     facts.transmits |= material.transmission > 0;
     facts.mirrors |= material.specular > 0 || material.transmission > 0;
