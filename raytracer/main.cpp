@@ -13,6 +13,7 @@
 #include "raytracer/geometry/kernel.h"
 #include "raytracer/image/png_file.h"
 #include "raytracer/options.h"
+#include "raytracer/plan.h"
 #include "raytracer/render/marks.h"
 #include "raytracer/render/picture.h"
 #include "raytracer/render/render.h"
@@ -44,26 +45,19 @@ int PrintComparison(const Options& options) {
   return difference.Identical() ? 0 : kDifferent;
 }
 
-template <class Real>
-std::uint64_t BytesOf(Model<Real>& model) {
-  std::uint64_t bytes = 0;
-  model.ForEachArray([&bytes](const auto& array) { bytes += array.size() * sizeof(array[0]); });
-  return bytes;
-}
-
 SceneChoice ChoiceOf(const Options& options) {
   return {options.scene, options.scene_size, static_cast<std::uint64_t>(options.object_limit),
-          options.camera};
+          options.camera, static_cast<std::uint64_t>(options.memory_limit)};
 }
 
 template <class Real>
 Rendered RenderScene(const World& world, const Scene& scene, const Model<Real>& model,
-                     const Kernel<Real>& kernel, const Options& options) {
+                     const Kernel<Real>& kernel, int depth, const Options& options) {
   const ImageSize image = scene.view.resolution;
   const PartitionChoice choice{RasterOf(image, options.samples), options.tile,
                                static_cast<std::uint32_t>(options.bundle), options.select,
                                static_cast<std::uint64_t>(options.seed)};
-  const ShadingChoice shading{static_cast<int>(options.max_depth), options.min_contribution};
+  const ShadingChoice shading{depth, options.min_contribution};
   const auto sampler = MakeSampler(scene, model, kernel, shading, image, options.samples);
   return Render(world, *sampler, options.partition, choice);
 }
@@ -101,6 +95,21 @@ void OnRank(const World& world, int rank, Work work) {
   });
 }
 
+/// What is decided for this scene; rank 0 says why if it is asked to.
+template <class Real>
+SceneFacts Adapt(const World& world, const Scene& scene, Model<Real>& model,
+                 const Options& options) {
+  const SceneFacts facts = FactsOf(scene, model);
+  OnAllRanks(world, [&] {
+    RequireDigits(facts, options);
+    return true;
+  });
+  OnRank(world, 0, [&] {
+    if (options.explain) fmt::print("{}", Explanation(facts, options));
+  });
+  return facts;
+}
+
 template <class Real>
 void RenderAndReport(const World& world, const Options& options) {
   SharedScene<Real> shared =
@@ -113,17 +122,19 @@ void RenderAndReport(const World& world, const Options& options) {
   report.build_cpu_s = shared.build_cpu_s;
   Stopwatch watch;
   const auto kernel = OnAllRanks(world, [&] { return MakeKernel(options.kernel, shared.model); });
+  const SceneFacts facts = Adapt(world, scene, shared.model, options);
   report.build_s += watch.Lap();
   report.build_cpu_s += watch.LapCpu();
-  const Rendered rendered = RenderScene(world, scene, shared.model, *kernel, options);
+  const Rendered rendered =
+      RenderScene(world, scene, shared.model, *kernel,
+                  DepthFor(facts, static_cast<int>(options.max_depth)), options);
   report.render_s = watch.Lap();
   report.render_cpu_s = watch.LapCpu();
   report.counts = rendered.counts;
   report.messages = rendered.messages;
   OnRank(world, AssemblingRank(world, options.partition),
          [&] { WritePictures(rendered.raster, scene.view.resolution, options); });
-  const RunReport run{shared.model.objects.size(), BytesOf(shared.model),
-                      GatherReports(world, report)};
+  const RunReport run{shared.model.objects.size(), facts.model_bytes, GatherReports(world, report)};
   OnRank(world, 0, [&] {
     WriteReport(run, options);
     if (!shared.kept_in.empty()) fmt::print("  scene from {}\n", shared.kept_in);

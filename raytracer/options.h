@@ -33,6 +33,7 @@ struct Options {
   std::string precision = "double";
   std::string kernel = "bvh";
   std::string patches = "auto";
+  std::int64_t memory_limit = 0;
   std::string output;
   std::string cost_map;
   std::string stats;
@@ -89,6 +90,9 @@ inline constexpr OptionSpec kOptions[] = {
     {"patches", &Options::patches, "auto|direct|N",
      "Bezier patches as N x N pairs of triangles, by direct intersection, or as the picture needs",
      1, 1024},
+    {"memory-limit", &Options::memory_limit, "BYTES",
+     "refuse a scene that takes more on a node; K, M, G and T are understood (what the node has)",
+     1, 9e15},
     {"output", &Options::output, "F.png", "write the picture"},
     {"cost-map", &Options::cost_map, "F.png|F.csv",
      "write what each pixel cost, as grey levels or as a table x,y,work,object,in_shadow,depth"},

@@ -8,8 +8,8 @@
 
 #include "raytracer/charts/chart_list.h"
 #include "raytracer/charts/measure.h"
+#include "raytracer/charts/moved.h"
 #include "raytracer/charts/range_text.h"
-#include "raytracer/charts/trials/picture_trial.h"
 
 namespace stipple::raytracer {
 namespace {
@@ -47,7 +47,7 @@ std::vector<double> OffsetsFor(const Session& session) {
 
 void AddOffset(Session& session, const char* panel, const Scene& scene, double offset,
                ChartTable& table) {
-  std::vector<Candidate> candidates = CandidatesOf(session, Moved(scene, 1, offset));
+  std::vector<Candidate> candidates = CandidatesOf(session, Moved(scene, {offset, offset, offset}));
   session.progress.Begin(fmt::format("precision, {} at {:g}", panel, offset),
                          RaysOf(session, candidates));
   Measure(session, candidates);

@@ -16,6 +16,7 @@ struct SceneChoice {
   std::int64_t size = -1;          // of a generated scene; below 0: its usual size
   std::uint64_t object_limit = 0;  // 0: all
   std::string camera = "default";  // "default", a further view of the scene, or a file
+  std::uint64_t memory_limit = 0;  // bytes that it may take on a node; 0: what the node has
 };
 
 /// Errors: InputError for files, UsageError for a size or view that the scene does not have.

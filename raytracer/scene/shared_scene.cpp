@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "raytracer/render/marks.h"
+#include "raytracer/scene/memory_need.h"
 #include "raytracer/stopwatch.h"
 
 namespace stipple::raytracer {
@@ -40,7 +41,8 @@ class Leader {
 
   /// Builds the model if it was not found, and keeps a large one.
   void Build() {
-    if (found_) return;
+    if (found_) return;  // a mapped file, which takes no memory that others need
+    RequireMemory(scene_.shapes, choice_.memory_limit);
     Model<Real> model = BuildModel<Real>(std::move(scene_.shapes), hierarchy_);
     made_ = {std::move(scene_), std::move(model)};
     if (cache_) kept_ = cache_->Keep(made_);

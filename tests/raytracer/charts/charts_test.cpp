@@ -7,6 +7,7 @@
 #include "raytracer/charts/chart_list.h"
 #include "raytracer/charts/jittered.h"
 #include "raytracer/charts/measure.h"
+#include "raytracer/charts/moved.h"
 #include "raytracer/charts/range_text.h"
 
 namespace stipple::raytracer {
@@ -62,6 +63,18 @@ TEST(Jittered, RaysAreInTheirPixelAndElsewhereInEach) {
   EXPECT_LT(noise, 0.1);
   JitteredSampler again(ready, {}, image, 2);
   EXPECT_EQ(Draw(session, again, image, {4}).rgb, once.rgb);
+}
+
+TEST(Moved, ByAPowerOfTwoTheRaysAreTheSame) {
+  Session session(true);
+  for (const ChartScene& chart_scene : kChartScenes) {
+    const Scene scene = session.Load(chart_scene);
+    const Scene moved = Moved(scene, {64, -64, 64});
+    ASSERT_EQ(moved.shapes.objects.size(), scene.shapes.objects.size()) << chart_scene.name;
+    const auto here = MakeReady<double>(scene, "bvh"), there = MakeReady<double>(moved, "bvh");
+    EXPECT_LT(RootMeanSquare(Draw(session, *here, {}, {1}), Draw(session, *there, {}, {1})), 1e-9)
+        << chart_scene.name;
+  }
 }
 
 TEST(Measure, EachCandidateIsDrawnOnceARound) {
