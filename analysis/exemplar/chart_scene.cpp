@@ -104,7 +104,7 @@ std::string CellTextOf(const MeasuredChart& chart, double value) {
 
 /// Numbers of a map's axis as they are written in the file: 0.001, 1e+06.
 std::string AxisText(const Cell& cell) {
-  if (const auto* number = std::get_if<double>(&cell)) return TickText(*number);
+  if (const auto* number = std::get_if<double>(&cell)) return TickText(*number, true);
   return CellText(cell);
 }
 

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "analysis/exemplar/chart_scene.h"
 #include "analysis/report/html_style.h"
 #include "analysis/views/svg.h"
@@ -36,7 +38,9 @@ std::string CellMarkup(const std::string& column, const Cell& cell, bool recomme
                      EscapeMarkup(CellText(cell)));
 }
 
-/// All figures, folded.
+constexpr std::size_t kMostRows = 200;
+
+/// All figures, or the first of very many, folded.
 std::string Figures(const MeasuredChart& chart) {
   const Table& table = chart.table;
   std::string text =
@@ -48,25 +52,32 @@ std::string Figures(const MeasuredChart& chart) {
                         EscapeMarkup(HeadingOf(column.name)));
   }
   text += "</tr></thead><tbody>\n";
-  for (const std::vector<Cell>& row : table.rows) {
+  for (std::size_t r = 0; r < std::min(kMostRows, table.rows.size()); ++r) {
+    const std::vector<Cell>& row = table.rows[r];
     const bool recommended = CellNumber(CellOf(table, row, "recommended")) > 0;
     text += "<tr>";
     for (std::size_t i = 0; i < row.size(); ++i)
       text += CellMarkup(table.columns[i].name, row[i], recommended);
     text += "</tr>\n";
   }
-  return text + "</tbody></table></div></details>\n";
+  text += "</tbody></table></div>";
+  if (table.rows.size() > kMostRows)
+    text += fmt::format("<p class=\"more\">and {} more: <code>{}.csv</code></p>",
+                        table.rows.size() - kMostRows, EscapeMarkup(chart.name));
+  return text + "</details>\n";
 }
 
 std::string ChartSection(const MeasuredChart& chart) {
   const Scene scene = SceneOf(chart);
   constexpr double kOnePanel = 800;
+  const std::string note =
+      (chart.kind == "map" ? "in the cells: " + chart.value.title + " \u00b7 " : "") + chart.effort;
   std::string text = fmt::format(
       "<section class=\"chart{0}\" id=\"{1}\" aria-labelledby=\"h-{1}\"><header "
       "class=\"panel end\"><h2 id=\"h-{1}\">{2}</h2><span class=\"note\">{3}</span></header>\n"
       "<p class=\"lead\">{4}</p>\n",
       scene.width < kOnePanel ? " one" : "", chart.name, EscapeMarkup(chart.title),
-      EscapeMarkup(chart.effort), EscapeMarkup(chart.sentence));
+      EscapeMarkup(note), EscapeMarkup(chart.sentence));
   return text + "<figure>" + DrawSvg(scene) + "</figure>\n" + Figures(chart) + "</section>\n";
 }
 

@@ -45,27 +45,21 @@ bool LabelRoom::IsFree(const Box& box, bool over_lines) const {
 }
 
 std::optional<Point> LabelRoom::Take(Point point, std::string_view text, const TextStyle& style,
-                                     int rings) {
+                                     Lines lines, int rings) {
   const double width = TextWidth(text, style.size, style.bold);
-  for (const bool over_lines : {false, true})
-    for (int ring = 1; ring <= rings; ++ring) {
-      const double side = kAway * ring, above = 16 * ring;
-      const Point places[] = {{side, 0},
-                              {-side - width, 0},
-                              {-width / 2, -above},
-                              {-width / 2, above},
-                              {side, -above * 0.8},
-                              {side, above * 0.8},
-                              {-side - width, -above * 0.8},
-                              {-side - width, above * 0.8}};
-      for (const Point& place : places) {
-        const Point at{point.x + place.x, point.y + place.y};
-        const Box box = BoxOfText(at, text, style);
-        if (!IsFree(box, over_lines)) continue;
-        taken_.push_back(box);
-        return at;
-      }
+  for (int ring = 1; ring <= rings; ++ring) {
+    const double side = kAway * ring, above = 16 * ring, corner = 0.8 * above;
+    const Point places[] = {{side, 0},           {-side - width, 0},     {-width / 2, -above},
+                            {-width / 2, above}, {side, -corner},        {-side - width, -corner},
+                            {side, corner},      {-side - width, corner}};
+    for (const Point& place : places) {
+      const Point at{point.x + place.x, point.y + place.y};
+      const Box box = BoxOfText(at, text, style);
+      if (!IsFree(box, lines == Lines::kCrossed)) continue;
+      taken_.push_back(box);
+      return at;
     }
+  }
   return std::nullopt;
 }
 

@@ -27,12 +27,14 @@ class LabelRoom {
   explicit LabelRoom(Box area) : area_(area) {}
 
   void TakeDisc(Point centre, double radius);
-  /// Lines are avoided where that is possible, discs and labels always.
   void TakeLine(Point from, Point to);
+
+  /// Labels may lie over lines, or not; never over discs and other labels.
+  enum class Lines { kAvoided, kCrossed };
 
   /// Where a label of this text may begin, next to `point` or up to `rings` times as far away; it
   /// is taken then. None: there is no room.
-  std::optional<Point> Take(Point point, std::string_view text, const TextStyle& style,
+  std::optional<Point> Take(Point point, std::string_view text, const TextStyle& style, Lines lines,
                             int rings = 1);
 
  private:

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <utility>
 
 #include "analysis/views/label_room.h"
@@ -124,16 +125,38 @@ Layer Discs(const Plane& plane, LabelRoom& room) {
   return layer;
 }
 
+/// How far labels may be, and whether over lines: the first way that leads to a place is taken.
+struct LabelWay {
+  LabelRoom::Lines lines;
+  int rings;
+};
+constexpr LabelWay kImportant[] = {{LabelRoom::Lines::kAvoided, 1},
+                                   {LabelRoom::Lines::kAvoided, 2},
+                                   {LabelRoom::Lines::kCrossed, 1},
+                                   {LabelRoom::Lines::kCrossed, 5}};
+constexpr LabelWay kOther[] = {{LabelRoom::Lines::kAvoided, 1}, {LabelRoom::Lines::kCrossed, 1}};
+
 /// A series' name, beside the first of its points that has room, from the last on.
 void AddName(const Plane& plane, const XySeries& series, LabelRoom& room, Layer& layer) {
   const TextStyle style{.size = kText, .colour = ColourOf(series).text, .bold = true};
-  constexpr int kFar = 4;
-  for (const int rings : {1, kFar})
+  for (const LabelWay& way : kImportant)
     for (auto point = series.points.rbegin(); point != series.points.rend(); ++point)
-      if (const auto at = room.Take(plane.At(*point), series.name, style, rings)) {
+      if (const auto at = room.Take(plane.At(*point), series.name, style, way.lines, way.rings)) {
         layer.shapes.emplace_back(TextShape{at->x, at->y, series.name, style});
         return;
       }
+}
+
+void AddPointLabel(const Plane& plane, const XyPoint& point, LabelRoom& room, Layer& layer) {
+  const TextStyle style{
+      .size = kText, .colour = point.marked ? kAccent : kInk, .bold = point.marked};
+  const std::span<const LabelWay> ways =
+      point.marked ? std::span<const LabelWay>(kImportant) : std::span<const LabelWay>(kOther);
+  for (const LabelWay& way : ways)
+    if (const auto at = room.Take(plane.At(point), point.label, style, way.lines, way.rings)) {
+      layer.shapes.emplace_back(TextShape{at->x, at->y, point.label, style});
+      return;
+    }
 }
 
 /// Marked points first, then names of series, then the other points.
@@ -141,12 +164,8 @@ Layer Labels(const Plane& plane, LabelRoom& room) {
   Layer layer{"marks labels", {}};  // of class marks: legible over lines
   const auto add_points = [&](bool marked) {
     for (const XySeries& series : plane.chart.series)
-      for (const XyPoint& p : series.points) {
-        if (p.label.empty() || p.marked != marked) continue;
-        const TextStyle style{.size = kText, .colour = marked ? kAccent : kInk, .bold = marked};
-        if (const auto at = room.Take(plane.At(p), p.label, style, marked ? 4 : 1))
-          layer.shapes.emplace_back(TextShape{at->x, at->y, p.label, style});
-      }
+      for (const XyPoint& p : series.points)
+        if (!p.label.empty() && p.marked == marked) AddPointLabel(plane, p, room, layer);
   };
   add_points(true);
   for (const XySeries& series : plane.chart.series)

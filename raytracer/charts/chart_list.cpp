@@ -10,6 +10,8 @@ constexpr ChartEntry kCharts[] = {
     {"precision", PrecisionChart,
      "kinds of number and kernels, with the scene far from the origin"},
     {"quadrics", QuadricsChart, "spheres as they are, or as triangles"},
+    {"offsets", OffsetsChart, "rules for where rays start, over size and distance from the origin"},
+    {"cracks", CracksChart, "rays lost between triangles, by the test that finds triangles"},
 };
 
 }  // namespace

@@ -23,6 +23,8 @@ ChartTable SamplingChart(Session& session);
 ChartTable DepthChart(Session& session);
 ChartTable PrecisionChart(Session& session);
 ChartTable QuadricsChart(Session& session);
+ChartTable OffsetsChart(Session& session);
+ChartTable CracksChart(Session& session);
 
 }  // namespace stipple::raytracer
 

@@ -11,7 +11,8 @@ namespace stipple::raytracer {
 
 class JitteredSampler final : public Sampler {
  public:
-  /// `across`: squares along each side of a pixel. The scene must outlive it.
+  /// `across`: squares along each side of a pixel. The scene has no transmission and must outlive
+  /// the sampler.
   JitteredSampler(const ReadyScene<double>& ready, ShadingChoice shading, ImageSize image,
                   int across);
 
@@ -21,7 +22,7 @@ class JitteredSampler final : public Sampler {
  private:
   ImageSize image_;
   Camera<double> camera_;
-  Tracer<double, Rules::kOpaque> tracer_;  // all that the charted scenes need
+  Tracer<double, Rules::kOpaque> tracer_;
   int across_;
 };
 

@@ -17,7 +17,7 @@ std::size_t Index(int x, int y, int width) {
          static_cast<std::size_t>(x);
 }
 
-double Component(std::int64_t sum, int rays) {
+double Component(std::int64_t sum, std::uint32_t rays) {
   const double mean = static_cast<double>(sum) / (static_cast<double>(kFixedOne) * rays);
   return std::clamp(mean, 0.0, 1.0);
 }
@@ -26,15 +26,17 @@ double Component(std::int64_t sum, int rays) {
 Pixels PixelsOf(const Raster& raster, ImageSize image, Samples samples) {
   const int width = RasterOf(image, samples).width;
   const int reach = samples.corners() ? 1 : 0;
-  const int rays = samples.corners() ? 4 : samples.per_pixel;
   Pixels pixels{image, {}};
   pixels.rgb.reserve(3 * Index(0, image.height, image.width));
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
       FixedColor sum;
+      std::uint32_t rays = 0;
       for (int dy = 0; dy <= reach; ++dy)
         for (int dx = 0; dx <= reach; ++dx) {
-          const FixedColor& color = raster[Index(x + dx, y + dy, width)].color;
+          const RayResult& result = raster[Index(x + dx, y + dy, width)];
+          const FixedColor& color = result.color;
+          rays += result.rays;
           sum.red += color.red;
           sum.green += color.green;
           sum.blue += color.blue;

@@ -41,8 +41,8 @@ using Intersection = std::function<Real(const Ray<Real>&)>;
 template <class Real>
 Intersection<Real> Naive(const Model<Real>& model) {
   if (model.cones.empty())
-    return [&](const Ray<Real>& ray) { return rejected::NaiveSphere(model.spheres[0], ray); };
-  return [&](const Ray<Real>& ray) { return rejected::NaiveCone(model.cones[0], ray); };
+    return [&](const Ray<Real>& ray) { return rejected::NaiveSphere(model.SphereAt(0), ray); };
+  return [&](const Ray<Real>& ray) { return rejected::NaiveCone(model.ConeAt(0), ray); };
 }
 
 template <class Real>
@@ -74,7 +74,7 @@ DistanceRates TryDistance(Quadric quadric, std::string_view method, double dista
   int wrong = 0;
   for (int i = 0; i < kPlacements; ++i) {
     const WideVec center = random.Direction() * static_cast<long double>(distance);
-    const Frame across(Normalized(center));
+    const TurnedAxes across(Normalized(center));
     const Shapes shapes = InReal(MakeQuadric(quadric, center, random.Direction()), Real{});
     const Model<Real> model = BuildModel<Real>(Shapes(shapes));
     const Model<long double> true_model = BuildModel<long double>(Shapes(shapes));
@@ -121,7 +121,7 @@ long double PlaneDistance(const Triangle<double>& triangle, WideVec origin, Wide
 /// A sliver, its corners rounded to `Real`.
 template <class Real>
 std::array<Vec3, 3> Sliver(double width, Random& random) {
-  const Frame frame(random.Direction());
+  const TurnedAxes frame(random.Direction());
   const auto w = static_cast<long double>(width);
   const auto corner = [&](WideVec local) {
     return Rounded<double>(Rounded<Real>(frame.At(local)));

@@ -53,7 +53,7 @@ TEST(LabelRoom, NoLabelIsPutOverAnother) {
   LabelRoom room({0, 0, 100, 40});
   const TextStyle style{.size = 12, .colour = kInk};
   std::vector<Box> boxes;
-  while (const auto at = room.Take({50, 20}, "label", style)) {
+  while (const auto at = room.Take({50, 20}, "label", style, LabelRoom::Lines::kAvoided)) {
     const Box box = BoxOfText(*at, "label", style);
     for (const Box& other : boxes) EXPECT_FALSE(box.Meets(other));
     boxes.push_back(box);
@@ -62,14 +62,15 @@ TEST(LabelRoom, NoLabelIsPutOverAnother) {
   EXPECT_GE(boxes.size(), 2U);
 }
 
-TEST(LabelRoom, LinesAreCrossedOnlyWhereThereIsNoOtherWay) {
+TEST(LabelRoom, LinesAreAvoidedUnlessTheyMayBeCrossed) {
   const TextStyle style{.size = 12, .colour = kInk};
   LabelRoom free({0, 0, 200, 100}), crowded({58, 40, 200, 60});
   for (LabelRoom* room : {&free, &crowded}) room->TakeLine({50, 50}, {200, 50});
-  const auto beside = free.Take({50, 50}, "label", style);
+  const auto beside = free.Take({50, 50}, "label", style, LabelRoom::Lines::kAvoided);
   ASSERT_TRUE(beside);
   EXPECT_LT(BoxOfText(*beside, "label", style).right, 50) << "the side without the line";
-  EXPECT_TRUE(crowded.Take({50, 50}, "label", style));
+  EXPECT_FALSE(crowded.Take({50, 50}, "label", style, LabelRoom::Lines::kAvoided));
+  EXPECT_TRUE(crowded.Take({50, 50}, "label", style, LabelRoom::Lines::kCrossed));
 }
 
 XyChart Crowded() {
