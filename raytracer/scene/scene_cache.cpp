@@ -21,9 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A text of fewer bytes cannot hold that many objects: "s 0 0 0 1" is one.
-constexpr std::size_t kLeastText = 10 * kLeastCachedObjects;
-
 constexpr std::string_view kEnding = ".scene";
 constexpr std::string_view kUnfinished = ".part";  // behind a name that mkstemp made
 constexpr auto kAbandoned = std::chrono::hours(24);
@@ -148,14 +145,13 @@ std::string CacheFolder() {
 }
 
 template <class Real>
-SceneCache<Real>::SceneCache(std::string_view text, std::string_view choices) {
+SceneCache<Real>::SceneCache(const Hash& text, std::string_view choices) {
   const std::string folder = CacheFolder();
-  if (text.size() < kLeastText || folder.empty()) return;
-  const std::uint64_t depends_on[] = {LayoutOf<Real>(), text.size()};
+  if (folder.empty()) return;
+  const std::uint64_t depends_on[] = {LayoutOf<Real>(), text.Value()};
   Hash hash;
   hash.Add(std::as_bytes(std::span(depends_on)));
   hash.Add(std::as_bytes(std::span(choices)));
-  hash.Add(std::as_bytes(std::span(text)));
   key_ = hash.Value();
   path_ = fmt::format("{}/{:016x}{}", folder, key_, kEnding);
 }
