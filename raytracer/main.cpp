@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
 #include <fstream>
 
 #include "raytracer/errors.h"
@@ -19,24 +20,13 @@
 #include "raytracer/scene/load.h"
 #include "raytracer/scene/nff.h"
 #include "raytracer/scene/shared_scene.h"
+#include "raytracer/stopwatch.h"
 
 namespace stipple::raytracer {
 namespace {
 
 constexpr int kDifferent = 1;  // exit status of --compare
 constexpr int kUnusable = 2;   // exit status after InputError and UsageError
-
-/// Seconds since it was made or last asked.
-class Stopwatch {
- public:
-  double Lap() {
-    const double now = MPI_Wtime();
-    return now - std::exchange(start_, now);
-  }
-
- private:
-  double start_ = MPI_Wtime();
-};
 
 int PrintComparison(const Options& options) {
   const Image a = ReadPng(options.compare.first);
@@ -54,6 +44,13 @@ int PrintComparison(const Options& options) {
   return difference.Identical() ? 0 : kDifferent;
 }
 
+template <class Real>
+std::uint64_t BytesOf(Model<Real>& model) {
+  std::uint64_t bytes = 0;
+  model.ForEachArray([&bytes](const auto& array) { bytes += array.size() * sizeof(array[0]); });
+  return bytes;
+}
+
 SceneChoice ChoiceOf(const Options& options) {
   return {options.scene, options.scene_size, static_cast<std::uint64_t>(options.object_limit),
           options.camera};
@@ -61,14 +58,13 @@ SceneChoice ChoiceOf(const Options& options) {
 
 template <class Real>
 Rendered RenderScene(const World& world, const Scene& scene, const Model<Real>& model,
-                     const Options& options) {
+                     const Kernel<Real>& kernel, const Options& options) {
   const ImageSize image = scene.view.resolution;
   const PartitionChoice choice{RasterOf(image, options.samples), options.tile,
                                static_cast<std::uint32_t>(options.bundle), options.select,
                                static_cast<std::uint64_t>(options.seed)};
-  const auto kernel = OnAllRanks(world, [&] { return MakeKernel(options.kernel, model); });
   const ShadingChoice shading{static_cast<int>(options.max_depth), options.min_contribution};
-  const auto sampler = MakeSampler(scene, model, *kernel, shading, image, options.samples);
+  const auto sampler = MakeSampler(scene, model, kernel, shading, image, options.samples);
   return Render(world, *sampler, options.partition, choice);
 }
 
@@ -107,20 +103,27 @@ void OnRank(const World& world, int rank, Work work) {
 
 template <class Real>
 void RenderAndReport(const World& world, const Options& options) {
-  SharedScene<Real> shared = SceneForAll<Real>(world, ChoiceOf(options));
+  SharedScene<Real> shared =
+      SceneForAll<Real>(world, ChoiceOf(options), HierarchyFor(options.kernel));
   Scene& scene = shared.scene;
   if (options.resolution.width > 0) scene.view.resolution = options.resolution;
   RankReport report;
   report.load_s = shared.load_s;
   report.build_s = shared.build_s;
+  report.build_cpu_s = shared.build_cpu_s;
   Stopwatch watch;
-  const Rendered rendered = RenderScene(world, scene, shared.model, options);
+  const auto kernel = OnAllRanks(world, [&] { return MakeKernel(options.kernel, shared.model); });
+  report.build_s += watch.Lap();
+  report.build_cpu_s += watch.LapCpu();
+  const Rendered rendered = RenderScene(world, scene, shared.model, *kernel, options);
   report.render_s = watch.Lap();
+  report.render_cpu_s = watch.LapCpu();
   report.counts = rendered.counts;
   report.messages = rendered.messages;
   OnRank(world, AssemblingRank(world, options.partition),
          [&] { WritePictures(rendered.raster, scene.view.resolution, options); });
-  const RunReport run{shared.model.objects.size(), GatherReports(world, report)};
+  const RunReport run{shared.model.objects.size(), BytesOf(shared.model),
+                      GatherReports(world, report)};
   OnRank(world, 0, [&] {
     WriteReport(run, options);
     if (!shared.kept_in.empty()) fmt::print("  scene from {}\n", shared.kept_in);

@@ -33,26 +33,6 @@ std::vector<std::string_view> Alternatives(const OptionSpec& spec) {
   throw UsageError(fmt::format("--{} {}: {}", spec.name, text, problem));
 }
 
-/// Names that are no choice may be files, which have a dot or a slash in their name: so a mistyped
-/// choice is noticed. Files with a fixed ending need it.
-void CheckText(const OptionSpec& spec, const std::string& text) {
-  std::vector<std::string_view> endings;
-  bool file = false;
-  for (const std::string_view word : Alternatives(spec)) {
-    if (word == text) return;
-    if (!HasCapital(word)) continue;
-    file = true;
-    if (word.starts_with("F.")) endings.push_back(word.substr(1));
-  }
-  const bool has_ending =
-      endings.empty() || std::ranges::any_of(endings, [&](std::string_view ending) {
-        return text.ends_with(ending) && text.size() > ending.size();
-      });
-  if (!endings.empty() && !has_ending) Reject(spec, text, fmt::format("should be {}", spec.value));
-  if (!file || (endings.empty() && text.find_first_of("./") == std::string::npos))
-    Reject(spec, text, fmt::format("unknown; known are {}", fmt::join(Alternatives(spec), ", ")));
-}
-
 double ToNumber(const OptionSpec& spec, std::string_view text, std::string_view digits) {
   double value = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
@@ -67,6 +47,30 @@ std::int64_t ToCount(const OptionSpec& spec, std::string_view text, std::string_
   const double value = ToNumber(spec, text, digits);
   if (value != std::floor(value)) Reject(spec, text, "should be a whole number");
   return static_cast<std::int64_t>(value);
+}
+
+/// Names that are no choice may be files, which have a dot or a slash in their name: so a mistyped
+/// choice is noticed. Files with a fixed ending need it.
+void CheckText(const OptionSpec& spec, const std::string& text) {
+  std::vector<std::string_view> endings;
+  bool file = false;
+  for (const std::string_view word : Alternatives(spec)) {
+    if (word == text) return;
+    if (!HasCapital(word)) continue;
+    if (word == "N") {
+      ToCount(spec, text, text);
+      return;
+    }
+    file = true;
+    if (word.starts_with("F.")) endings.push_back(word.substr(1));
+  }
+  const bool has_ending =
+      endings.empty() || std::ranges::any_of(endings, [&](std::string_view ending) {
+        return text.ends_with(ending) && text.size() > ending.size();
+      });
+  if (!endings.empty() && !has_ending) Reject(spec, text, fmt::format("should be {}", spec.value));
+  if (!file || (endings.empty() && text.find_first_of("./") == std::string::npos))
+    Reject(spec, text, fmt::format("unknown; known are {}", fmt::join(Alternatives(spec), ", ")));
 }
 
 /// Sets the member of one option from its words.
@@ -85,6 +89,7 @@ class Setter {
   void operator()(double Options::*member) const {
     options_.*member = ToNumber(spec_, text_, text_);
   }
+  void operator()(bool Options::*member) const { options_.*member = true; }
   void operator()(ImageSize Options::*member) const {
     const std::size_t cross = std::min(text_.find('x'), text_.size() - 1);
     const std::string_view all = text_;
@@ -126,6 +131,7 @@ std::string DefaultText(const OptionSpec& spec) {
 void AddRow(CLI::App& app, const OptionSpec& spec, Options& options) {
   const bool pair =
       std::holds_alternative<std::pair<std::string, std::string> Options::*>(spec.member);
+  const bool is_switch = std::holds_alternative<bool Options::*>(spec.member);
   const auto set = [&options, &spec](const std::vector<std::string>& words) {
     std::visit(Setter(options, spec, words), spec.member);
     return true;
@@ -135,7 +141,7 @@ void AddRow(CLI::App& app, const OptionSpec& spec, Options& options) {
                  fmt::format("{}{}", spec.meaning,
                              preset.empty() ? "" : fmt::format(" (default {})", preset)))
       ->type_name(std::string(spec.value))
-      ->type_size(pair ? 2 : 1)
+      ->type_size(is_switch ? 0 : pair ? 2 : 1)
       ->multi_option_policy(pair ? CLI::MultiOptionPolicy::Throw
                                  : CLI::MultiOptionPolicy::TakeLast);
 }
@@ -163,6 +169,8 @@ Options ParseOptions(int argc, const char* const* argv) {
   if (!unknown.empty())
     throw UsageError(
         fmt::format("{}: unknown option; known are{}", unknown.front(), KnownOptions()));
+  if (options.kernel == "embree" && !options.cost_map.empty())
+    throw UsageError("--cost-map with --kernel embree: Embree does not count its tests");
   return options;
 }
 

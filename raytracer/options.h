@@ -32,19 +32,22 @@ struct Options {
   double min_contribution = 0;
   std::string precision = "double";
   std::string kernel = "bvh";
+  std::string patches = "auto";
   std::string output;
   std::string cost_map;
   std::string stats;
   std::string write_scene;
   std::pair<std::string, std::string> compare;
+  bool explain = false;
   bool help = false;
 };
 
 /// In `value`, words in small letters are choices; words with capitals stand for what the user
-/// fills in. An option whose value has no capitals accepts nothing but its choices.
+/// fills in. An option whose value has no capitals accepts nothing but its choices; one without a
+/// value is a switch.
 struct OptionSpec {
   std::string_view name;
-  std::variant<std::string Options::*, std::int64_t Options::*, double Options::*,
+  std::variant<std::string Options::*, std::int64_t Options::*, double Options::*, bool Options::*,
                ImageSize Options::*, Samples Options::*,
                std::pair<std::string, std::string> Options::*>
       member;
@@ -56,9 +59,10 @@ struct OptionSpec {
 inline constexpr double kMostPoints = 1e9;
 
 inline constexpr OptionSpec kOptions[] = {
-    {"scene", &Options::scene, "balls|rings|teapot|tree|FILE.nff", "what to render"},
+    {"scene", &Options::scene, "balls|rings|teapot|teapot-patches|tree|FILE.nff", "what to render"},
     {"scene-size", &Options::scene_size, "N",
-     "size of a generated scene (balls 4, rings 7, teapot 12, tree 11)", 0, 100000},
+     "size of a generated scene (balls 4, rings 7, teapot and teapot-patches 12, tree 11)", 0,
+     100000},
     {"object-limit", &Options::object_limit, "N",
      "keep only N objects: of balls the largest, else the first (all)", 1, kMostPoints},
     {"camera", &Options::camera, "default|side|above|FILE",
@@ -82,11 +86,15 @@ inline constexpr OptionSpec kOptions[] = {
     {"precision", &Options::precision, "double|float", "kind of number that rays are computed in"},
     {"kernel", &Options::kernel, "bvh|scalar|embree",
      "what finds hits: the own hierarchy, the same without vector instructions, or Embree"},
+    {"patches", &Options::patches, "auto|direct|N",
+     "Bezier patches as N x N pairs of triangles, by direct intersection, or as the picture needs",
+     1, 1024},
     {"output", &Options::output, "F.png", "write the picture"},
     {"cost-map", &Options::cost_map, "F.png|F.csv",
      "write what each pixel cost, as grey levels or as a table x,y,work,object,in_shadow,depth"},
     {"stats", &Options::stats, "F.json", "write counts and times"},
     {"write-scene", &Options::write_scene, "F.nff", "write the scene and stop"},
+    {"explain", &Options::explain, "", "say what is adapted to this scene, and why"},
     {"compare", &Options::compare, "A.png B.png",
      "say how far two pictures differ and stop; exit status 0 if they are identical, else 1"},
 };

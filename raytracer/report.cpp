@@ -35,7 +35,9 @@ struct TimeRow {
 };
 constexpr TimeRow kTimes[] = {{"load_s", &RankReport::load_s},
                               {"build_s", &RankReport::build_s},
-                              {"render_s", &RankReport::render_s}};
+                              {"render_s", &RankReport::render_s},
+                              {"build_cpu_s", &RankReport::build_cpu_s},
+                              {"render_cpu_s", &RankReport::render_cpu_s}};
 
 std::uint64_t Sum(const RunReport& report, std::uint64_t (*value)(const RankReport&)) {
   std::uint64_t sum = 0;
@@ -62,6 +64,7 @@ std::vector<RankReport> GatherReports(const World& world, const RankReport& repo
 std::string StatsJson(const RunReport& report) {
   nlohmann::ordered_json json;
   json["objects"] = report.objects;
+  json["model_bytes"] = report.model_bytes;
   json["ranks"] = report.ranks.size();
   for (const CountRow& row : kCounts) json[std::string(row.key)] = Sum(report, row.value);
   for (const TimeRow& row : kTimes) json[std::string(row.key)] = Slowest(report, row.seconds);

@@ -36,7 +36,7 @@ std::vector<PixelCost> CostsOf(const Raster& raster, ImageSize image, Samples sa
       PixelCost& cost =
           costs[Index(std::min(x, image.width - 1), std::min(y, image.height - 1), image.width)];
       cost.work += result.work;
-      cost.depth = std::max(cost.depth, result.depth);
+      cost.depth = std::max<std::uint32_t>(cost.depth, result.depth);
       if (x >= image.width || y >= image.height) continue;
       cost.object = result.object;
       cost.in_shadow = result.in_shadow;

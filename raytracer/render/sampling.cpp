@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "raytracer/render/sampling.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <numeric>
@@ -36,10 +37,10 @@ std::vector<Offset> OffsetsOf(Samples samples) {
   return offsets;
 }
 
-template <class Real>
+template <class Real, Rules kRules>
 class SamplerIn final : public Sampler {
  public:
-  SamplerIn(const Scene& scene, Tracer<Real> tracer, ImageSize image, Samples samples)
+  SamplerIn(const Scene& scene, Tracer<Real, kRules> tracer, ImageSize image, Samples samples)
       : raster_(RasterOf(image, samples)),
         camera_(scene.view, raster_),
         offsets_(OffsetsOf(samples)),
@@ -62,7 +63,7 @@ class SamplerIn final : public Sampler {
   ImageSize raster_;
   Camera<Real> camera_;
   std::vector<Offset> offsets_;
-  Tracer<Real> tracer_;
+  Tracer<Real, kRules> tracer_;
 };
 
 }  // namespace
@@ -76,8 +77,19 @@ template <class Real>
 std::unique_ptr<Sampler> MakeSampler(const Scene& scene, const Model<Real>& model,
                                      const Kernel<Real>& kernel, ShadingChoice shading,
                                      ImageSize image, Samples samples) {
-  return std::make_unique<SamplerIn<Real>>(scene, Tracer<Real>(scene, model, kernel, shading),
-                                           image, samples);
+  const auto make = [&]<Rules kRules>() -> std::unique_ptr<Sampler> {
+    return std::make_unique<SamplerIn<Real, kRules>>(
+        scene, Tracer<Real, kRules>(scene, model, kernel, shading), image, samples);
+  };
+  switch (std::max(shading.at_least, RulesOf(scene))) {
+    case Rules::kOpaque:
+      return make.template operator()<Rules::kOpaque>();
+    case Rules::kTransmitting:
+      return make.template operator()<Rules::kTransmitting>();
+    case Rules::kExtended:
+      break;
+  }
+  return make.template operator()<Rules::kExtended>();
 }
 
 template std::unique_ptr<Sampler> MakeSampler(const Scene&, const Model<float>&,

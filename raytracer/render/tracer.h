@@ -10,22 +10,33 @@
 // light without a colour is white, and all are scaled by sqrt(L) / (2 L) for L lights, as SPD
 // suggests.
 //
+// Two extensions, for scenes that ask for them: transparent materials with a priority may overlap
+// (media.h), else each lies in air; a light with a radius is seen in its own colour by eye,
+// reflected and refracted rays, while shadow rays go to its centre and pass other lights.
+//
 // A ray's colour is added up in 64-bit fixed point, throughput x local colour at each hit, so that
-// no order of addition can change a picture.
+// no order of addition can change a picture. So is what the rays that were not followed could have
+// added at most.
 #ifndef STIPPLE_RAYTRACER_RENDER_TRACER_H
 #define STIPPLE_RAYTRACER_RENDER_TRACER_H
 
 #include <cmath>
 #include <cstdint>
+#include <type_traits>
 
 #include "raytracer/geometry/kernel.h"
+#include "raytracer/render/media.h"
+#include "raytracer/render/shading.h"
 #include "raytracer/scene/scene.h"
 
 namespace stipple::raytracer {
 
 struct ShadingChoice {
   int max_depth = 5;
-  double min_contribution = 0;  // rays that could change a pixel by less are not traced
+  double min_contribution =
+      0;  // rays whose share of the eye ray's colour is smaller are not traced
+  Rules at_least =
+      Rules::kOpaque;  // compiled in even if the scene needs less: to measure its price
 };
 
 struct RayCounts {
@@ -41,23 +52,28 @@ struct RayCounts {
 /// A colour in units of 2^-32.
 struct FixedColor {
   std::int64_t red = 0, green = 0, blue = 0;
+
+  friend bool operator==(const FixedColor&, const FixedColor&) = default;
 };
 inline constexpr std::int64_t kFixedOne = std::int64_t{1} << 32;
 
 /// What the rays through one point of the raster found. It travels in messages as it is.
 struct RayResult {
   FixedColor color;                  // sum over the rays
+  std::int64_t lost = 0;             // rays not followed could add no more to a component of it
   std::uint32_t work = 0;            // box and primitive tests
   std::uint32_t object = kNoObject;  // that the first eye ray hit
-  std::uint32_t in_shadow = 0;       // 1 if something stands between that hit and a light it faces
-  std::uint32_t depth = 0;           // of the deepest ray
+  std::uint16_t rays = 0;            // eye rays
+  std::uint8_t in_shadow = 0;        // 1 if something stands between that hit and a light it faces
+  std::uint8_t depth = 0;            // of the deepest ray
+  float spread = 0;                  // adaptive sampling: estimated squared error (sampling.h)
 };
-static_assert(sizeof(RayResult) == 40);
+static_assert(sizeof(RayResult) == 48);
 
-template <class Real>
+template <class Real, Rules kRules>
 class Tracer {
  public:
-  /// All are kept by reference.
+  /// Model and kernel are kept by reference, of the scene nothing is kept.
   Tracer(const Scene& scene, const Model<Real>& model, const Kernel<Real>& kernel,
          ShadingChoice choice);
 
@@ -67,13 +83,27 @@ class Tracer {
   const RayCounts& counts() const { return counts_; }
 
  private:
+  static constexpr bool kTransmission = kRules >= Rules::kTransmitting;
+  static constexpr bool kExtensions = kRules == Rules::kExtended;
+
+  using Material = ShadedMaterial<Real>;
+
+  /// A ray and what it carries.
+  struct Leg {
+    Ray<Real> ray;
+    Real throughput;  // share of the eye ray's colour
+    int depth;
+    [[no_unique_address]] std::conditional_t<kExtensions, Media<Real>, OnlyAir> media;
+  };
+
   /// A place where a ray met an object, ready for shading.
   struct Surface {
     Vec<Real> point;
-    Vec<Real> face;    // unit normal of the geometry, towards the ray's origin
-    Vec<Real> normal;  // unit normal for shading, on the same side
-    Real offset;       // distance that new rays keep from the surface
-    bool leaving;      // the ray came from inside
+    Vec<Real> face;      // unit normal of the geometry, towards the ray's origin
+    Vec<Real> normal;    // unit normal for shading, on the same side
+    Vec<Real> mirrored;  // direction of the ray reflected about `normal`
+    Real offset;         // distance that new rays keep from the surface
+    bool leaving;        // the ray came from inside
     const Material* material;
 
     /// Where new rays start: a little off the surface, on the side they go to.
@@ -81,19 +111,23 @@ class Tracer {
     Vec<Real> Inside() const { return point - face * offset; }
   };
 
-  void Trace(const Ray<Real>& ray, Vec<Real> throughput, int depth, RayResult& result);
+  void Trace(const Leg& leg, RayResult& result);
+  bool MeetsLight(const Leg& leg, Real distance, RayResult& result);
   Surface SurfaceAt(const Ray<Real>& ray, const Hit<Real>& hit) const;
-  Vec<Real> LocalColor(const Ray<Real>& ray, const Surface& surface, bool& in_shadow);
-  void Follow(const Ray<Real>& ray, const Surface& surface, Vec<Real> throughput, int depth,
-              RayResult& result);
+  Vec<Real> LocalColor(const Surface& surface, bool& in_shadow);
+  void Follow(const Leg& leg, const Surface& surface, RayResult& result);
+  Real Refract(const Leg& leg, const Surface& surface, RayResult& result);
+  Real Bending(const Leg& leg, const Surface& surface) const;
+  bool WorthTracing(Real throughput, int depth, RayResult& result) const;
+  void Lose(Real throughput, int depth, RayResult& result) const;
 
-  bool WorthTracing(Vec<Real> throughput) const;
-
-  const Scene& scene_;
   const Model<Real>& model_;
   const Kernel<Real>& kernel_;
-  ShadingChoice choice_;
-  Real light_scale_;
+  Shading<Real> shading_;
+  std::array<double, kDeepest + 1> largest_colors_;
+  int max_depth_;
+  Real min_contribution_;
+  Real rounding_;
   RayCounts counts_;
 };
 

@@ -25,14 +25,14 @@ constexpr std::string_view kEnding = ".scene";
 constexpr std::string_view kUnfinished = ".part";  // behind a name that mkstemp made
 constexpr auto kAbandoned = std::chrono::hours(24);
 
-/// The hash of a whole file, whose header holds 0 where the hash will be.
-std::uint64_t HashOfFile(PackedHeader header, std::span<const std::byte> body) {
-  header.hash = 0;
-  std::byte first[kHeaderBytes] = {};
-  std::memcpy(first, &header, sizeof header);
+/// The hash of a whole file, as if its header had 0 where the hash is.
+std::uint64_t HashOfFile(std::span<const std::byte> bytes) {
+  std::byte first[kHeaderBytes];
+  std::ranges::copy(bytes.first(kHeaderBytes), first);
+  std::memset(first + offsetof(PackedHeader, hash), 0, sizeof(PackedHeader::hash));
   Hash hash;
   hash.Add(first);
-  hash.Add(body);
+  hash.Add(bytes.subspan(kHeaderBytes));
   return hash.Value();
 }
 
@@ -163,8 +163,7 @@ std::optional<CachedScene<Real>> SceneCache<Real>::Open(std::string& note) const
   const std::span<const std::byte> bytes = cached.file.bytes();
   if (bytes.empty()) return std::nullopt;
   std::optional<BuiltScene<Real>> built = Unpack<Real>(bytes);
-  if (!built || header.key != key_ ||
-      header.hash != HashOfFile(header, bytes.subspan(kHeaderBytes))) {
+  if (!built || header.key != key_ || header.hash != HashOfFile(bytes)) {
     note = fmt::format("{}: damaged; it is made anew", path_);
     return std::nullopt;
   }

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "raytracer/render/marks.h"
+#include "raytracer/stopwatch.h"
 
 namespace stipple::raytracer {
 namespace {
@@ -22,7 +23,7 @@ struct KeptPlace {
 template <class Real>
 class Leader {
  public:
-  explicit Leader(const SceneChoice& choice) : choice_(choice) {}
+  Leader(const SceneChoice& choice, Hierarchy hierarchy) : choice_(choice), hierarchy_(hierarchy) {}
 
   /// Finds the scene in the cache, or reads or generates it.
   void Load() {
@@ -39,7 +40,7 @@ class Leader {
   /// Builds the model if it was not found, and keeps a large one.
   void Build() {
     if (found_) return;
-    Model<Real> model = BuildModel<Real>(std::move(scene_.shapes));
+    Model<Real> model = BuildModel<Real>(std::move(scene_.shapes), hierarchy_);
     made_ = {std::move(scene_), std::move(model)};
     if (cache_) kept_ = cache_->Keep(made_);
   }
@@ -61,7 +62,10 @@ class Leader {
 
  private:
   /// In words, all that a model depends on beside its text.
-  std::string Choices() const { return fmt::format("object-limit {}", choice_.object_limit); }
+  std::string Choices() const {
+    return fmt::format("object-limit {} hierarchy {}", choice_.object_limit,
+                       static_cast<int>(hierarchy_));
+  }
 
   void FindKept() {
     const std::optional<Hash> text = Hash::OfFile(choice_.scene, kLeastCachedText);
@@ -83,6 +87,7 @@ class Leader {
   }
 
   const SceneChoice& choice_;
+  Hierarchy hierarchy_;
   std::optional<SceneCache<Real>> cache_;
   std::optional<CachedScene<Real>> kept_;
   bool found_ = false;
@@ -148,14 +153,15 @@ bool Share(const Node& node, Leader<Real>& leader, SharedScene<Real>& shared) {
 }  // namespace
 
 template <class Real>
-SharedScene<Real> SceneForAll(const World& world, const SceneChoice& choice) {
+SharedScene<Real> SceneForAll(const World& world, const SceneChoice& choice, Hierarchy hierarchy) {
   SharedScene<Real> shared;
-  Leader<Real> leader(choice);
+  Leader<Real> leader(choice, hierarchy);
   const Node node(world.comm);
-  const double begin = MPI_Wtime();
+  Stopwatch watch;
   Mark(Moment::kLoadBegins);
   OnAllRanks(world, [&] { return node.leads() && (leader.Load(), true); });
-  const double loaded = MPI_Wtime();
+  shared.load_s = watch.Lap();
+  watch.LapCpu();
   Mark(Moment::kBuildBegins);
   OnAllRanks(world, [&] { return node.leads() && (leader.Build(), true); });
   const bool done = node.size() > 1 && Share(node, leader, shared);
@@ -167,12 +173,12 @@ SharedScene<Real> SceneForAll(const World& world, const SceneChoice& choice) {
     return true;
   });
   shared.kept_in = leader.FoundIn();
-  shared.load_s = loaded - begin;
-  shared.build_s = MPI_Wtime() - loaded;
+  shared.build_s = watch.Lap();
+  shared.build_cpu_s = watch.LapCpu();
   return shared;
 }
 
-template SharedScene<float> SceneForAll(const World&, const SceneChoice&);
-template SharedScene<double> SceneForAll(const World&, const SceneChoice&);
+template SharedScene<float> SceneForAll(const World&, const SceneChoice&, Hierarchy);
+template SharedScene<double> SceneForAll(const World&, const SceneChoice&, Hierarchy);
 
 }  // namespace stipple::raytracer

@@ -21,6 +21,7 @@ struct SharedScene {
   Scene scene;  // without shapes: they are in the model
   Model<Real> model;
   double load_s = 0, build_s = 0;  // of this rank, waiting for its leader included
+  double build_cpu_s = 0;          // of all threads of this rank
   std::string kept_in;             // file that the scene was found in; empty if it was made
 
   // What the model may lie in.
@@ -31,7 +32,7 @@ struct SharedScene {
 /// The chosen scene, ready for tracing. Every rank calls it, and lets go of it before MPI_Finalize.
 /// Errors: StoppedTogether.
 template <class Real>
-SharedScene<Real> SceneForAll(const World& world, const SceneChoice& choice);
+SharedScene<Real> SceneForAll(const World& world, const SceneChoice& choice, Hierarchy hierarchy);
 
 }  // namespace stipple::raytracer
 

@@ -50,6 +50,10 @@ TEST(Options, ValuesArriveWhereTheyBelong) {
   EXPECT_EQ(options.min_contribution, 0.25);
   EXPECT_EQ(options.seed, 12345678901);
   EXPECT_TRUE(Parse({}).samples.corners());
+  EXPECT_FALSE(Parse({}).explain);
+  EXPECT_TRUE(Parse({"--explain", "--seed", "2"}).explain);
+  EXPECT_EQ(Parse({"--patches", "16"}).patches, "16");
+  EXPECT_EQ(Parse({"--patches", "direct"}).patches, "direct");
   EXPECT_EQ(Parse({"--compare", "a.png", "b.png"}).compare.second, "b.png");
 }
 
@@ -68,6 +72,8 @@ TEST(Options, WrongValuesAreNamed) {
                                                         {"--output", "picture"},
                                                         {"--output", ".png"},
                                                         {"--cost-map", "map.gif"},
+                                                        {"--patches", "some"},
+                                                        {"--patches", "0"},
                                                         {"--camera", "behind"},
                                                         {"--seed", "99999999999999999999"},
                                                         {"--partition", ""}}) {

@@ -31,4 +31,5 @@ refuse '--fast: unknown option; known are --scene' "$raytracer" --fast
 refuse '--tile circles: unknown; known are rows, columns, blocks' "$raytracer" --tile circles
 refuse 'rings have above' "$raytracer" --scene balls --camera above
 refuse 'none.png: cannot be read' "$raytracer" --compare none.png none.png
+refuse 'Embree does not count its tests' "$raytracer" --kernel embree --cost-map x.png
 echo "all refused"

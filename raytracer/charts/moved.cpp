@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include "raytracer/charts/moved.h"
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace stipple::raytracer {
+namespace {
+
+std::span<const Vec3> NormalsFrom(const Shapes& shapes, std::uint32_t first, std::size_t count) {
+  if (first == kNoNormals) return {};
+  return std::span(shapes.normals).subspan(first, count);
+}
+
+void AddMovedTriangle(const Shapes& from, const Object& object, Vec3 by, Shapes& to) {
+  const Triangle<double>& triangle = from.triangles[object.index];
+  std::array<Vec3, 3> corners;
+  for (std::size_t i = 0; i < 3; ++i)
+    corners[i] = Vec3{triangle.corner[i][0], triangle.corner[i][1], triangle.corner[i][2]} + by;
+  to.AddPolygon(corners, NormalsFrom(from, triangle.first_normal, 3), object.material);
+}
+
+void AddMovedPolygon(const Shapes& from, const Object& object, Vec3 by, Shapes& to) {
+  const Polygon<double>& polygon = from.polygons[object.index];
+  std::vector<Vec3> corners;
+  for (std::uint32_t i = 0; i < polygon.vertex_count; ++i)
+    corners.push_back(from.vertices[polygon.first_vertex + i] + by);
+  to.AddPolygon(corners, NormalsFrom(from, polygon.first_normal, corners.size()), object.material);
+}
+
+}  // namespace
+
+void AddMoved(const Shapes& from, const Object& object, Vec3 by, Shapes& to) {
+  switch (object.kind) {
+    case ShapeKind::kSphere: {
+      const Sphere<double>& sphere = from.spheres[object.index];
+      to.AddSphere(sphere.center + by, sphere.radius, object.material);
+      break;
+    }
+    case ShapeKind::kCone: {
+      const Cone<double>& cone = from.cones[object.index];
+      to.AddCone(cone.base + by, cone.base_radius, cone.apex + by, cone.apex_radius,
+                 object.material);
+      break;
+    }
+    case ShapeKind::kTriangle:
+      AddMovedTriangle(from, object, by, to);
+      break;
+    case ShapeKind::kPolygon:
+      AddMovedPolygon(from, object, by, to);
+      break;
+    case ShapeKind::kPatch: {
+      std::array<Vec3, 16> control;
+      for (std::size_t i = 0; i < control.size(); ++i)
+        control[i] = from.patches[object.index].control[i] + by;
+      to.AddPatch(control, object.material);
+      break;
+    }
+  }
+}
+
+Scene Moved(const Scene& scene, Vec3 by) {
+  Scene moved{scene.background, scene.view, scene.lights, scene.materials, {}};
+  moved.view.from = scene.view.from + by;
+  moved.view.at = scene.view.at + by;
+  for (Light& light : moved.lights) light.position = light.position + by;
+  for (const Object& object : scene.shapes.objects)
+    AddMoved(scene.shapes, object, by, moved.shapes);
+  return moved;
+}
+
+}  // namespace stipple::raytracer
