@@ -60,12 +60,13 @@ std::string TimeBeside(const MeasuredChart& chart, const std::string& series) {
   std::string recommended;
   for (const Row& row : chart.table.rows)
     if (NumberOf(chart, row, "recommended") > 0) recommended = TextOf(chart, row, "series");
+  if (series == recommended) return {};
   double own = 0, other = 0;
   for (const Row& row : chart.table.rows) {
     if (TextOf(chart, row, "series") == series) own += NumberOf(chart, row, "cpu_s");
     if (TextOf(chart, row, "series") == recommended) other += NumberOf(chart, row, "cpu_s");
   }
-  return own > 0 && other > 0 ? fmt::format(", {:.2g} x CPU", own / other) : "";
+  return own > 0 && other > 0 ? fmt::format(", {:.2g} \u00d7 CPU", own / other) : "";
 }
 
 /// One series in one panel. A name that its points say already is left away.

@@ -64,7 +64,7 @@ Layer Numbers(const HeatLayout& layout) {
       const double x = layout.XOf(column), y = layout.YOf(row);
       const double width = layout.map.cell_width - kGap, height = layout.map.cell_height - kGap;
       const bool deep = RampStep(cell.value, layout.map.most) >= kDeepStep;
-      if (!std::isnan(cell.value) && TextWidth(cell.text, kNumber) <= width)
+      if (!std::isnan(cell.value) && !cell.text.empty() && TextWidth(cell.text, kNumber) <= width)
         layer.shapes.emplace_back(TextShape{
             x + width / 2,
             y + height / 2,

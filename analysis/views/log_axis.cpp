@@ -56,8 +56,9 @@ LogAxis AxisOver(std::string title, std::span<const double> values) {
   return axis;
 }
 
-std::string TickText(double value) {
-  if (value <= 0 || (value > 0.9e-4 && value < 1.1e4)) return fmt::format("{:g}", value);
+std::string TickText(double value, bool powers) {
+  const double far = powers ? 0.9e3 : 1.1e4;
+  if (value <= 0 || (value > 1 / far && value < far)) return fmt::format("{:g}", value);
   constexpr std::string_view kDigits[] = {"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074",
                                           "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
   const int power = static_cast<int>(std::floor(std::log10(value) + 1e-9));
@@ -74,10 +75,11 @@ std::vector<LogTick> TicksOf(const LogAxis& axis) {
   std::vector<LogTick> ticks;
   if (axis.zero) ticks.push_back({0, "0"});
   const int step = axis.most - axis.least < kShort ? 1 : 3;
+  const bool powers = std::max(axis.most, -axis.least) > 4 + kRounding;
   int number = 3 * static_cast<int>(std::floor(axis.least + kRounding));
   for (; std::log10(Round125(number)) <= axis.most + kRounding; number += step)
     if (std::log10(Round125(number)) >= axis.least - kRounding)
-      ticks.push_back({Round125(number), TickText(Round125(number))});
+      ticks.push_back({Round125(number), TickText(Round125(number), powers)});
   return ticks;
 }
 

@@ -24,8 +24,9 @@ struct LogAxis {
 /// Round ends around positive values, a little apart from them; `zero` if others are among them.
 LogAxis AxisOver(std::string title, std::span<const double> values);
 
-/// "0.001", "500"; powers of ten far from 1 with an exponent: "10⁶".
-std::string TickText(double value);
+/// "0.001", "500"; with an exponent, "10⁶", what is far from 1, and with `powers` all from 1000 on
+/// and from 0.001 down.
+std::string TickText(double value, bool powers = false);
 
 struct LogTick {
   double value = 0;

@@ -87,30 +87,40 @@ Layer Titles(const Plane& plane) {
   return layer;
 }
 
-/// Lines and discs, the quiet ones first.
+void AddLine(const Plane& plane, const XySeries& series, LabelRoom& room, Layer& layer) {
+  std::vector<Point> way;
+  for (const XyPoint& p : series.points) way.push_back(plane.At(p));
+  if (!series.line || way.size() < 2) return;
+  for (std::size_t i = 1; i < way.size() && !series.quiet; ++i) room.TakeLine(way[i - 1], way[i]);
+  layer.shapes.emplace_back(
+      LineShape{std::move(way), ColourOf(series).disc, series.quiet ? 1.0 : 1.75, false, 1});
+}
+
+void AddDisc(const Plane& plane, const XySeries& series, const XyPoint& point, LabelRoom& room,
+             Layer& layer) {
+  const Point at = plane.At(point);
+  const double radius = series.quiet ? kQuietDisc : kDisc;
+  layer.shapes.emplace_back(
+      PolygonShape{Circle(at, radius), point.marked ? kAccent : ColourOf(series).disc});
+  if (!series.quiet || series.line) room.TakeDisc(at, point.marked ? kRing : radius + 1);
+  if (!point.marked) return;
+  std::vector<Point> ring = Circle(at, kRing);
+  ring.push_back(ring.front());
+  layer.shapes.emplace_back(LineShape{std::move(ring), kAccent, 1.5, false, 1});
+}
+
+/// Lines and discs: the quiet ones first, the marked ones last.
 Layer Discs(const Plane& plane, LabelRoom& room) {
   Layer layer{"discs", {}};
   for (const bool quiet : {true, false})
-    for (const XySeries& series : plane.chart.series) {
-      if (series.quiet != quiet) continue;
-      const Colour colour = ColourOf(series).disc;
-      std::vector<Point> way;
-      for (const XyPoint& p : series.points) way.push_back(plane.At(p));
-      if (series.line && way.size() > 1) {
-        for (std::size_t i = 1; i < way.size() && !quiet; ++i) room.TakeLine(way[i - 1], way[i]);
-        layer.shapes.emplace_back(LineShape{way, colour, quiet ? 1.0 : 1.75, false, 1});
-      }
-      for (std::size_t i = 0; i < way.size(); ++i) {
-        const bool marked = series.points[i].marked;
-        const double radius = quiet ? kQuietDisc : kDisc;
-        layer.shapes.emplace_back(PolygonShape{Circle(way[i], radius), marked ? kAccent : colour});
-        if (!quiet || series.line) room.TakeDisc(way[i], marked ? kRing : radius + 1);
-        if (!marked) continue;
-        std::vector<Point> ring = Circle(way[i], kRing);
-        ring.push_back(ring.front());
-        layer.shapes.emplace_back(LineShape{std::move(ring), kAccent, 1.5, false, 1});
-      }
-    }
+    for (const XySeries& series : plane.chart.series)
+      if (series.quiet == quiet) AddLine(plane, series, room, layer);
+  for (const bool marked : {false, true})
+    for (const bool quiet : {true, false})
+      for (const XySeries& series : plane.chart.series)
+        for (const XyPoint& point : series.points)
+          if (series.quiet == quiet && point.marked == marked)
+            AddDisc(plane, series, point, room, layer);
   return layer;
 }
 
@@ -128,7 +138,7 @@ void AddName(const Plane& plane, const XySeries& series, LabelRoom& room, Layer&
 
 /// Marked points first, then names of series, then the other points.
 Layer Labels(const Plane& plane, LabelRoom& room) {
-  Layer layer{"labels", {}};
+  Layer layer{"marks labels", {}};  // of class marks: legible over lines
   const auto add_points = [&](bool marked) {
     for (const XySeries& series : plane.chart.series)
       for (const XyPoint& p : series.points) {

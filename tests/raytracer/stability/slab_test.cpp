@@ -15,6 +15,7 @@
 #include <map>
 
 #include "raytracer/charts/trials/random.h"
+#include "raytracer/geometry/intersect.h"
 #include "raytracer/geometry/kernel.h"
 
 namespace stipple::raytracer {
@@ -90,6 +91,112 @@ TEST(FlatBox, IsLostWithoutWidening) {
   constexpr float kHalf = std::numeric_limits<float>::epsilon() / 2;
   EXPECT_GT(LostFlatBoxes(1), 0.1);
   EXPECT_EQ(LostFlatBoxes(1 + 2 * (3 * kHalf / (1 - 3 * kHalf))), 0);
+}
+
+/// A wall of `kCells`^2 squares across `axis`, halved to triangles or not.
+constexpr int kCells = 6;
+constexpr double kCell = 0.1;  // so that no coordinate is a round number
+Vec3 OnWall(int axis, double u, double v) {
+  if (axis == 0) return {0.3, u, v};
+  return axis == 1 ? Vec3{v, 0.3, u} : Vec3{u, v, 0.3};
+}
+Shapes Wall(int axis, bool triangles) {
+  Shapes shapes;
+  for (int i = 0; i < kCells; ++i)
+    for (int j = 0; j < kCells; ++j) {
+      const auto corner = [&](int di, int dj) {
+        return OnWall(axis, (i + di) * kCell, (j + dj) * kCell);
+      };
+      const Vec3 a = corner(0, 0), b = corner(1, 0), c = corner(1, 1), d = corner(0, 1);
+      if (triangles) {
+        shapes.AddPolygon(std::array{a, b, c}, {}, 0);
+        shapes.AddPolygon(std::array{a, c, d}, {}, 0);
+      } else {
+        shapes.AddPolygon(std::array{a, b, c, d}, {}, 0);
+      }
+    }
+  return shapes;
+}
+
+/// Rays straight at all inner edges and corners of the wall, from both sides: how many are lost.
+template <class Real>
+int LostOnWall(std::string_view name, int axis, bool triangles, Real zero) {
+  const Model<Real> model = BuildModel<Real>(Wall(axis, triangles));
+  const auto kernel = MakeKernel(name, model);
+  TestCounts tests;
+  int lost = 0;
+  for (int i = 2; i <= 2 * kCells - 2; ++i)
+    for (int j = 2; j <= 2 * kCells - 2; ++j)
+      for (const Real side : {Real{1}, Real{-1}}) {
+        // Even i and j: at an edge or corner, computed as the wall's are.
+        const double u = i % 2 == 0 ? i / 2 * kCell : i * kCell / 2;
+        const double v = j % 2 == 0 ? j / 2 * kCell : j * kCell / 2;
+        Vec<Real> origin = Rounded<Real>(OnWall(axis, u, v));
+        Vec<Real> direction{zero, zero, zero};
+        (axis == 0 ? direction.x : axis == 1 ? direction.y : direction.z) = -side;
+        (axis == 0 ? origin.x : axis == 1 ? origin.y : origin.z) += side;
+        lost += kernel->Intersect({origin, direction}, tests).object == kNoObject ? 1 : 0;
+        lost += kernel->Occluded({origin, direction}, Real{2}, tests) ? 0 : 1;
+      }
+  return lost;
+}
+
+TEST(BoxInPlane, IsAlwaysFoundByKernels) {
+  for (const bool triangles : {false, true})
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double zero : {0.0, -0.0}) {
+        EXPECT_EQ(LostOnWall<double>("bvh", axis, triangles, zero), 0) << axis << triangles;
+        EXPECT_EQ(LostOnWall<double>("scalar", axis, triangles, zero), 0) << axis << triangles;
+        EXPECT_EQ(LostOnWall<float>("bvh", axis, triangles, static_cast<float>(zero)), 0) << axis;
+      }
+}
+
+/// Rays at many squares in planes of all axes, far from the origin and of all sizes: how many find
+/// no square where testing each square finds one.
+template <class Real>
+int LostSquares(std::string_view name, double shift) {
+  Random random(1);
+  Shapes shapes;
+  std::vector<WideVec> middles;
+  for (int i = 0; i < 300; ++i) {
+    const Vec3 middle = Rounded<double>(random.Direction() * 3) + Vec3{shift, shift, shift};
+    const double half = std::pow(10, static_cast<double>(random.Between(-5, 0)));
+    const int axis = random.Below(3);
+    const auto corner = [&](double u, double v) {
+      const Vec3 side = OnWall(axis, u * half, v * half) - OnWall(axis, 0, 0);
+      return Rounded<double>(Rounded<Real>(middle + side));
+    };
+    const std::array square{corner(-1, -1), corner(1, -1), corner(1, 1), corner(-1, 1)};
+    if (!(Length(NewellNormal(square)) > 0)) continue;  // too small for `Real` at this place
+    shapes.AddPolygon(square, {}, 0);
+    middles.push_back(Rounded<long double>(middle));
+  }
+  const Model<Real> model = BuildModel<Real>(std::move(shapes));
+  const auto kernel = MakeKernel(name, model);
+  TestCounts tests;
+  int lost = 0, hits = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const WideVec target = middles[static_cast<std::size_t>(i) % middles.size()];
+    const Ray<Real> ray = RoundedRay<Real>(target + random.Direction() * 5, target);
+    Real nearest = kMiss<Real>;
+    for (const Polygon<Real>& polygon : model.polygons) {
+      const std::span outline(model.outlines.data() + polygon.first_vertex, polygon.vertex_count);
+      nearest = std::min(nearest, IntersectPolygon(polygon, outline, ray));
+    }
+    hits += nearest != kMiss<Real> ? 1 : 0;
+    lost += kernel->Intersect(ray, tests).t != nearest ? 1 : 0;
+  }
+  EXPECT_GT(hits, 2000);
+  return lost;
+}
+
+TEST(FlatBox, IsNotLostByKernels) {
+  for (const double shift : {0.0, 100.0}) {
+    EXPECT_EQ(LostSquares<double>("bvh", shift), 0) << shift;
+    EXPECT_EQ(LostSquares<double>("scalar", shift), 0) << shift;
+    EXPECT_EQ(LostSquares<float>("bvh", shift), 0) << shift;
+  }
+  EXPECT_EQ(LostSquares<double>("bvh", 1e6), 0);
 }
 
 }  // namespace
