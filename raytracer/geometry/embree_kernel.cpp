@@ -176,10 +176,9 @@ class EmbreeKernel final : public Kernel<Real> {
     return true;
   }
 
-  /// The shape of the primitive `i` of a geometry.
-  template <class Shape>
-  const Shape& ShapeOf(const Array<Shape>& shapes, GeometryNumber geometry, std::size_t i) const {
-    return shapes[model_.objects[objects_[geometry][i]].index];
+  /// Where the model holds the primitive `i` of a geometry.
+  std::uint32_t SlotOf(GeometryNumber geometry, std::size_t i) const {
+    return model_.objects[objects_[geometry][i]].index;
   }
 
   Owned<RTCGeometry> NewGeometry(RTCGeometryType type) const {
@@ -221,7 +220,7 @@ class EmbreeKernel final : public Kernel<Real> {
     const auto geometry = NewGeometry(RTC_GEOMETRY_TYPE_SPHERE_POINT);
     Ball* const balls = NewBuffer<Ball>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, count);
     for (std::size_t i = 0; i < count; ++i) {
-      const Sphere<Real>& sphere = ShapeOf(model_.spheres, kSpheres, i);
+      const Sphere<Real> sphere = model_.SphereAt(SlotOf(kSpheres, i));
       balls[i] = StoredBall(sphere.center, sphere.radius);
     }
     Attach(geometry, kSpheres);
@@ -239,7 +238,7 @@ class EmbreeKernel final : public Kernel<Real> {
     auto* const flags =
         NewBuffer<std::uint8_t>(geometry, RTC_BUFFER_TYPE_FLAGS, RTC_FORMAT_UCHAR, count);
     for (std::size_t i = 0; i < count; ++i) {
-      const Cone<Real>& cone = ShapeOf(model_.cones, kCones, i);
+      const Cone<Real> cone = model_.ConeAt(SlotOf(kCones, i));
       ends[2 * i] = StoredBall(cone.base, cone.base_radius);
       ends[2 * i + 1] = StoredBall(cone.apex, cone.apex_radius);
       first_ends[i] = static_cast<std::uint32_t>(2 * i);
@@ -266,7 +265,7 @@ class EmbreeKernel final : public Kernel<Real> {
     const auto geometry = NewGeometry(RTC_GEOMETRY_TYPE_TRIANGLE);
     Point* const corners = NewCorners(geometry, RTC_FORMAT_UINT3, count, 3);
     for (std::size_t i = 0; i < count; ++i) {
-      const Triangle<Real>& triangle = ShapeOf(model_.triangles, kTriangles, i);
+      const Triangle<Real> triangle = model_.TriangleAt(SlotOf(kTriangles, i));
       for (std::size_t j = 0; j < 3; ++j) {
         const Real(&c)[3] = triangle.corner[j];
         corners[3 * i + j] = StoredPoint({c[0], c[1], c[2]});
@@ -281,7 +280,7 @@ class EmbreeKernel final : public Kernel<Real> {
     const auto geometry = NewGeometry(RTC_GEOMETRY_TYPE_QUAD);
     Point* const corners = NewCorners(geometry, RTC_FORMAT_UINT4, count, 4);
     for (std::size_t i = 0; i < count; ++i) {
-      const Polygon<Real>& polygon = ShapeOf(model_.polygons, kQuads, i);
+      const Polygon<Real>& polygon = model_.polygons[SlotOf(kQuads, i)];
       for (std::size_t j = 0; j < 4; ++j)
         corners[4 * i + j] = StoredPoint(model_.vertices[polygon.first_vertex + j]);
     }
@@ -305,16 +304,16 @@ class EmbreeKernel final : public Kernel<Real> {
   /// The points whose hull holds the shape.
   template <GeometryNumber kNumber>
   std::span<const Vec<Real>> HullOf(std::uint32_t primitive) const {
-    if constexpr (kNumber == kPatches) return ShapeOf(model_.patches, kPatches, primitive).control;
-    const Polygon<Real>& polygon = ShapeOf(model_.polygons, kPolygons, primitive);
+    if constexpr (kNumber == kPatches) return model_.patches[SlotOf(kPatches, primitive)].control;
+    const Polygon<Real>& polygon = model_.polygons[SlotOf(kPolygons, primitive)];
     return {model_.vertices.data() + polygon.first_vertex, polygon.vertex_count};
   }
 
   template <GeometryNumber kNumber>
   PatchHit<Real> Meet(std::uint32_t primitive, const Ray<Real>& ray, float max_t) const {
     if constexpr (kNumber == kPatches)
-      return IntersectPatch(ShapeOf(model_.patches, kPatches, primitive), ray, Real{max_t});
-    const Polygon<Real>& polygon = ShapeOf(model_.polygons, kPolygons, primitive);
+      return IntersectPatch(model_.patches[SlotOf(kPatches, primitive)], ray, Real{max_t});
+    const Polygon<Real>& polygon = model_.polygons[SlotOf(kPolygons, primitive)];
     const std::span outline(model_.outlines.data() + polygon.first_vertex, polygon.vertex_count);
     return {IntersectPolygon(polygon, outline, ray), 0, 0};
   }

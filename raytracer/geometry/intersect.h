@@ -48,7 +48,7 @@ inline Real IntersectCone(const Cone<Real>& cone, const Ray<Real>& ray) {
   const Real dz = Dot(ray.direction, cone.axis);
   const Vec<Real> op = o - cone.axis * oz;
   const Vec<Real> dp = ray.direction - cone.axis * dz;
-  const Real slope = (cone.apex_radius - cone.base_radius) / cone.height;
+  const Real slope = SlopeOf(cone);
   const Real radius = cone.base_radius + slope * oz;
   const Real a = Dot(dp, dp) - slope * slope * dz * dz;
   const Real b = Dot(op, dp) - slope * radius * dz;

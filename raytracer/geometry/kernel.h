@@ -12,8 +12,6 @@
 
 namespace stipple::raytracer {
 
-inline constexpr std::uint32_t kNoObject = 0xffffffff;
-
 template <class Real>
 struct Hit {
   Real t = std::numeric_limits<Real>::infinity();

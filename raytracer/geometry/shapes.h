@@ -34,6 +34,12 @@ struct Cone {
   Real height;     // distance from base to apex
 };
 
+/// Growth of the radius along the axis.
+template <class Real>
+inline Real SlopeOf(const Cone<Real>& cone) {
+  return (cone.apex_radius - cone.base_radius) / cone.height;
+}
+
 /// Corners as plain numbers: the intersection picks coordinates by index.
 template <class Real>
 struct Triangle {

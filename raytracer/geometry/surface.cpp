@@ -11,7 +11,7 @@ Vec<Real> ConeNormal(const Cone<Real>& cone, Vec<Real> point) {
   const Vec<Real> from_base = point - cone.base;
   const Real along = Dot(from_base, cone.axis);
   const Vec<Real> across = from_base - cone.axis * along;
-  const Real slope = (cone.apex_radius - cone.base_radius) / cone.height;
+  const Real slope = SlopeOf(cone);
   const Real radius = std::abs(cone.base_radius + slope * along);
   const Real sign = cone.base_radius < 0 || cone.apex_radius < 0 ? -1 : 1;
   // At the very tip there is no direction across; the axis is as good as any.
@@ -70,17 +70,17 @@ Normals<Real> NormalsAt(const Model<Real>& model, const Hit<Real>& hit, Vec<Real
   const Object& object = model.objects[hit.object];
   switch (object.kind) {
     case ShapeKind::kSphere: {
-      const Sphere<Real>& sphere = model.spheres[object.index];
+      const Sphere<Real> sphere = model.SphereAt(object.index);
       const Vec<Real> normal =
           Normalized(sphere.radius < 0 ? sphere.center - point : point - sphere.center);
       return {normal, normal};
     }
     case ShapeKind::kCone: {
-      const Vec<Real> normal = ConeNormal(model.cones[object.index], point);
+      const Vec<Real> normal = ConeNormal(model.ConeAt(object.index), point);
       return {normal, normal};
     }
     case ShapeKind::kTriangle:
-      return TriangleNormals(model, model.triangles[object.index], hit);
+      return TriangleNormals(model, model.TriangleAt(object.index), hit);
     case ShapeKind::kPatch: {
       const Vec<Real> normal =
           PointOn(model.patches[object.index], Parameter<Real>(hit.u), Parameter<Real>(hit.v))

@@ -58,8 +58,26 @@ std::vector<Ray<double>> RandomRays(int count, double reach) {
   return rays;
 }
 
+/// Scenes of every kind of primitive, and one of all.
+std::vector<Scene> Scenes() {
+  std::vector<Scene> scenes = {Balls(2), Rings(2), Teapot(3), Tree(5)};
+  scenes.push_back(Rings(1));
+  Shapes& mixed = scenes.back().shapes;
+  const std::array<Vec3, 5> notched{{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {0, 0, 0}, {-2, 2, 0}}};
+  mixed.AddPolygon(notched, {}, 0);
+  mixed.AddPolygon(std::array<Vec3, 3>{{{-2, 0, -2}, {2, 0, -2}, {0, 0.5, 2}}}, {}, 0);
+  mixed.AddSphere({0.3, 0.4, 0.5}, -0.7, 0);
+  mixed.AddCone({-1, 0, 0}, 0.5, {1, 0.2, 0.3}, 0, 0);
+  return scenes;
+}
+
+template <class Real>
+Vec<Real> In(Vec3 v) {
+  return {static_cast<Real>(v.x), static_cast<Real>(v.y), static_cast<Real>(v.z)};
+}
+
 TEST(Bvh, HitsWhatBruteForceHits) {
-  for (Scene scene : {Balls(2), Rings(2), Teapot(3), Tree(5)}) {
+  for (Scene scene : Scenes()) {
     const Model<double> model = BuildModel<double>(Shapes(scene.shapes));
     const auto kernel = MakeKernel("bvh", model);
     TestCounts tests;
@@ -71,25 +89,97 @@ TEST(Bvh, HitsWhatBruteForceHits) {
       ASSERT_EQ(hit.t, expected.t);
       hits += hit.object != kNoObject ? 1 : 0;
       ASSERT_EQ(kernel->Occluded(ray, kMiss<double>, tests), expected.object != kNoObject);
-      ASSERT_FALSE(kernel->Occluded(ray, expected.t * 0.999, tests) &&
-                   expected.object != kNoObject);
+      ASSERT_FALSE(kernel->Occluded(ray, expected.t, tests) && expected.object != kNoObject);
+      ASSERT_EQ(kernel->Occluded(ray, std::nextafter(expected.t, 1e9), tests),
+                expected.object != kNoObject);
     }
     EXPECT_GT(hits, 100);
     EXPECT_LT(tests.primitive_tests, 3000 * scene.shapes.objects.size());
   }
 }
 
-TEST(Bvh, EveryObjectIsInOneLeafAndLeavesAreSmall) {
-  const Model<double> bvh = BuildModel<double>(Balls(3).shapes);
-  std::vector<int> seen(bvh.objects.size());
-  std::uint32_t entries = 0;
-  for (const BvhNode& node : bvh.nodes) {
-    EXPECT_LE(node.count, 8U);
-    entries += node.count;
+template <class Real>
+void ExpectSameBits(const Scene& scene) {
+  const Model<Real> model = BuildModel<Real>(Shapes(scene.shapes));
+  const auto vector = MakeKernel("bvh", model), scalar = MakeKernel("scalar", model);
+  TestCounts vector_tests, scalar_tests;
+  for (const Ray<double>& asked : RandomRays(3000, 4)) {
+    const Ray<Real> ray{In<Real>(asked.origin), In<Real>(asked.direction)};
+    const Hit<Real> hit = vector->Intersect(ray, vector_tests);
+    const Hit<Real> expected = scalar->Intersect(ray, scalar_tests);
+    ASSERT_EQ(hit.object, expected.object);
+    ASSERT_EQ(hit.t, expected.t);
+    ASSERT_EQ(hit.u, expected.u);
+    ASSERT_EQ(hit.v, expected.v);
+    for (const Real reach : {Real{1}, expected.t, kMiss<Real>})
+      ASSERT_EQ(vector->Occluded(ray, reach, vector_tests),
+                scalar->Occluded(ray, reach, scalar_tests));
   }
-  for (const BvhEntry& entry : bvh.entries) ++seen[entry.object];
-  EXPECT_EQ(entries, seen.size());
-  for (const int times : seen) ASSERT_EQ(times, 1);
+  EXPECT_EQ(vector_tests.box_tests, scalar_tests.box_tests);
+  EXPECT_EQ(vector_tests.primitive_tests, scalar_tests.primitive_tests);
+  EXPECT_GT(vector_tests.primitive_tests, 3000U);
+}
+
+TEST(Bvh, VectorInstructionsChangeNoBitOfAHitAndNoCount) {
+  for (const Scene& scene : Scenes()) {
+    ExpectSameBits<double>(scene);
+    ExpectSameBits<float>(scene);
+  }
+}
+
+TEST(Bvh, EveryObjectIsInOneSlotAndKnowsIt) {
+  for (const Scene& scene : Scenes()) {
+    const Model<double> model = BuildModel<double>(Shapes(scene.shapes));
+    std::size_t seen = 0;
+    for (std::size_t kind = 0; kind < kShapeKinds; ++kind)
+      for (std::uint32_t slot = 0; slot < model.numbers[kind].size(); ++slot) {
+        const std::uint32_t number = model.numbers[kind][slot];
+        if (number == kNoObject) continue;
+        ++seen;
+        ASSERT_EQ(static_cast<std::size_t>(model.objects[number].kind), kind);
+        ASSERT_EQ(model.objects[number].index, slot);
+      }
+    EXPECT_EQ(seen, scene.shapes.objects.size());
+  }
+}
+
+/// Fails unless every leaf below holds each of its objects within the box of the leaf and all
+/// above.
+void ExpectContained(const Model<double>& model, const Shapes& shapes, ChildRef at,
+                     const Bounds& outer, std::size_t& objects) {
+  const Frame& frame = model.frame[0];
+  if (at.IsLeaf()) {
+    const auto kind = static_cast<std::size_t>(at.Kind());
+    const bool in_blocks = at.Kind() < ShapeKind::kPolygon;
+    for (std::uint32_t i = 0; i < at.Objects(); ++i, ++objects) {
+      const std::uint32_t slot = at.First() * (in_blocks ? kLanes : 1) + i;
+      const Bounds box = BoundsOf(shapes, shapes.objects[model.numbers[kind][slot]]);
+      const Vec3 low = (box.low - frame.middle) * frame.scale;
+      const Vec3 high = (box.high - frame.middle) * frame.scale;
+      ASSERT_EQ(Min(low, outer.low), outer.low);
+      ASSERT_EQ(Max(high, outer.high), outer.high);
+    }
+    return;
+  }
+  const WideNode& node = model.nodes[at.Node()];
+  for (std::uint32_t i = 0; i < at.Children(); ++i) {
+    const auto side = [&](std::uint32_t high) {
+      return Vec3{node.side[WideNode::SideAt(high, 0) + i],
+                  node.side[WideNode::SideAt(high, 1) + i],
+                  node.side[WideNode::SideAt(high, 2) + i]};
+    };
+    ExpectContained(model, shapes, node.child[i],
+                    {Max(outer.low, side(0)), Min(outer.high, side(1))}, objects);
+  }
+}
+
+TEST(Bvh, BoxesContainTheirObjectsAfterRounding) {
+  for (const Scene& scene : Scenes()) {
+    const Model<double> model = BuildModel<double>(Shapes(scene.shapes));
+    std::size_t objects = 0;
+    ExpectContained(model, scene.shapes, model.frame[0].root, {{-1, -1, -1}, {1, 1, 1}}, objects);
+    EXPECT_EQ(objects, scene.shapes.objects.size());
+  }
 }
 
 TEST(Bvh, AnEmptySceneIsMissed) {
