@@ -49,13 +49,13 @@ template <class Real>
 void TakeObject(const Model<Real>& model, const Object& object, Measure& measure) {
   switch (object.kind) {
     case ShapeKind::kSphere: {
-      const Sphere<Real>& sphere = model.spheres[object.index];
+      const Sphere<Real> sphere = model.SphereAt(object.index);
       const double radius = std::abs(ToDouble(sphere.radius));
       measure.Point(ToDouble(sphere.center), radius);
       return measure.Feature(radius);
     }
     case ShapeKind::kCone: {
-      const Cone<Real>& cone = model.cones[object.index];
+      const Cone<Real> cone = model.ConeAt(object.index);
       const double base = std::abs(ToDouble(cone.base_radius));
       const double apex = std::abs(ToDouble(cone.apex_radius));
       measure.Point(ToDouble(cone.base), base);
@@ -64,7 +64,8 @@ void TakeObject(const Model<Real>& model, const Object& object, Measure& measure
       return measure.Feature(ToDouble(cone.height));
     }
     case ShapeKind::kTriangle: {
-      const auto& corner = model.triangles[object.index].corner;
+      const Triangle<Real> triangle = model.TriangleAt(object.index);
+      const auto& corner = triangle.corner;
       Vec3 corners[3];
       for (int i = 0; i < 3; ++i)
         corners[i] = {ToDouble(corner[i][0]), ToDouble(corner[i][1]), ToDouble(corner[i][2])};
