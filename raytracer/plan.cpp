@@ -95,12 +95,11 @@ struct Decision {
 };
 
 Decision Precision(const SceneFacts& facts, const Options& options) {
-  const std::string error = fmt::format(
-      "float would err by {:.2g} of the smallest feature ({:.3g}, with coordinates and "
-      "distances to {:.3g}); allowed {}",
-      FloatError(facts), facts.smallest, facts.reach, kFloatErrorAllowed);
-  return {options.precision,
-          options.precision == "float" ? error : error + "; double takes a tenth more time"};
+  return {
+      options.precision,
+      fmt::format("float errs by {:.2g} of the smallest feature ({:.3g}, seen over {:.3g}), {} is "
+                  "allowed; double takes a tenth more time",
+                  FloatError(facts), facts.smallest, facts.reach, kFloatErrorAllowed)};
 }
 
 Decision Shape(const SceneFacts& facts, const Options&) {
@@ -153,9 +152,10 @@ Decision RayGroups(const SceneFacts&, const Options&) {
 }
 
 Decision Memory(const SceneFacts& facts, const Options&) {
-  const std::uint64_t objects = std::max<std::uint64_t>(1, facts.Objects());
-  return {"a copy per node", fmt::format("{} bytes, {} an object: no rays travel to objects",
-                                         facts.model_bytes, facts.model_bytes / objects)};
+  const auto bytes = static_cast<double>(facts.model_bytes);
+  return {"a copy per node",
+          fmt::format("{:.1f} MB, {:.0f} bytes an object: no ray has to travel to its objects",
+                      bytes * 1e-6, bytes / std::max(1.0, static_cast<double>(facts.Objects())))};
 }
 
 Decision Cache(const SceneFacts& facts, const Options& options) {
