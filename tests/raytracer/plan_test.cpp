@@ -98,10 +98,9 @@ TEST(Plan, FactsAreThoseOfTheScene) {
   EXPECT_EQ(facts.smallest, 0.25);
   EXPECT_DOUBLE_EQ(facts.reach, std::sqrt(60.0 * 60 + 8 * 8));  // from the eye to a corner
   EXPECT_TRUE(facts.mirrors);
-  EXPECT_TRUE(facts.transmits);
-  EXPECT_FALSE(facts.extended);
+  EXPECT_EQ(facts.rules, Rules::kTransmitting);
   scene.lights.emplace_back().radius = 1;
-  EXPECT_TRUE(Facts(scene).extended);
+  EXPECT_EQ(Facts(scene).rules, Rules::kExtended);
   EXPECT_FALSE(Facts(Tree(2)).mirrors);
 }
 
