@@ -42,9 +42,11 @@ struct Descriptor {
 
 std::string ReadFile(const std::string& path) {
   const Descriptor file(path);
+  if (file.number < 0)
+    throw InputError(path, 0, fmt::format("cannot be read: {}", std::strerror(errno)));
   std::string text;
   // One byte more than the file has, so that its end is met without growing.
-  text.resize(file.number >= 0 ? file.Size() + 1 : 1);
+  text.resize(file.Size() + 1);
   std::size_t size = 0;
   for (;;) {
     if (size == text.size()) text.resize(size + kReadBytes);
