@@ -46,8 +46,13 @@ int PrintComparison(const Options& options) {
 }
 
 SceneChoice ChoiceOf(const Options& options) {
-  return {options.scene, options.scene_size, static_cast<std::uint64_t>(options.object_limit),
-          options.camera, static_cast<std::uint64_t>(options.memory_limit)};
+  return {options.scene,
+          options.scene_size,
+          static_cast<std::uint64_t>(options.object_limit),
+          options.camera,
+          static_cast<std::uint64_t>(options.memory_limit),
+          options.resolution,
+          options.patches};
 }
 
 template <class Real>
@@ -115,7 +120,6 @@ void RenderAndReport(const World& world, const Options& options) {
   SharedScene<Real> shared =
       SceneForAll<Real>(world, ChoiceOf(options), HierarchyFor(options.kernel));
   Scene& scene = shared.scene;
-  if (options.resolution.width > 0) scene.view.resolution = options.resolution;
   RankReport report;
   report.load_s = shared.load_s;
   report.build_s = shared.build_s;

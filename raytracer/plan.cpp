@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "raytracer/errors.h"
+#include "raytracer/scene/patches.h"
 #include "raytracer/scene/scene_cache.h"
 
 namespace stipple::raytracer {
@@ -110,6 +111,19 @@ Decision Shape(const SceneFacts& facts, const Options&) {
                       facts.CountOf(ShapeKind::kTriangle), facts.CountOf(ShapeKind::kPolygon))};
 }
 
+Decision Patches(const SceneFacts& facts, const Options& options) {
+  const PatchChoice& patches = facts.patches;
+  if (patches.patches == 0) return {"none", "the scene has no Bezier patches"};
+  const std::string needed =
+      fmt::format("{} cells a side would keep the triangles of {} patches within {} pixel",
+                  patches.cells_needed, patches.patches, kPatchErrorPixels);
+  const std::string_view asked = options.patches == "auto" ? "" : "as asked; ";
+  if (patches.cells == 0)
+    return {"met directly", fmt::format("{}{}; up to {} are made", asked, needed, kMostPatchCells)};
+  return {fmt::format("{0} x {0} cells", patches.cells),
+          fmt::format("{}off by {:.2g} pixel; {}", asked, patches.error_pixels, needed)};
+}
+
 Decision SamplesOfPixel(const SceneFacts&, const Options& options) {
   if (options.samples.corners())
     return {"corners", "one ray a pixel, shared with its neighbours: 5 dB better than one inside"};
@@ -175,9 +189,10 @@ struct DecisionRow {
   Decision (*decide)(const SceneFacts&, const Options&);
 };
 constexpr DecisionRow kDecisions[] = {
-    {"precision", Precision}, {"shapes", Shape},    {"samples", SamplesOfPixel},
-    {"depth", Depth},         {"shading", Shading}, {"hierarchy", Hierarchy},
-    {"rays", RayGroups},      {"cache", Cache},     {"memory", Memory},
+    {"precision", Precision},    {"shapes", Shape},   {"patches", Patches},
+    {"samples", SamplesOfPixel}, {"depth", Depth},    {"shading", Shading},
+    {"hierarchy", Hierarchy},    {"rays", RayGroups}, {"cache", Cache},
+    {"memory", Memory},
 };
 
 }  // namespace
@@ -196,6 +211,7 @@ SceneFacts FactsOf(const Scene& scene, Model<Real>& model) {
   }
   model.ForEachArray(
       [&](const auto& array) { facts.model_bytes += array.size() * sizeof(array[0]); });
+  facts.patches = scene.patches;
   for (const Material& material : scene.materials) {
     facts.mirrors |= material.specular > 0 || material.transmission > 0;
   }

@@ -22,6 +22,7 @@ namespace stipple::raytracer {
 /// What decisions need to know of a scene.
 struct SceneFacts {
   std::array<std::uint64_t, 5> count{};  // of objects, by ShapeKind
+  PatchChoice patches;                   // what was made of Bezier patches
   std::uint64_t model_bytes = 0;         // of the shapes and their hierarchy
 
   /// Largest number that a ray's arithmetic meets: a coordinate of an object or of the eye, or the

@@ -21,7 +21,7 @@ class JitteredSampler final : public Sampler {
  private:
   ImageSize image_;
   Camera<double> camera_;
-  Tracer<double> tracer_;
+  Tracer<double, Rules::kOpaque> tracer_;  // all that the charted scenes need
   int across_;
 };
 

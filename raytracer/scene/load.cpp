@@ -38,6 +38,18 @@ bool IsNamedView(const std::string& camera) {
       kGenerators, [&](const Generator& generator) { return generator.other_view.name == camera; });
 }
 
+View CameraOf(const SceneChoice& choice, const View& own) {
+  if (choice.camera == "default") return own;
+  if (!IsNamedView(choice.camera)) return ReadNffView(choice.camera);
+  const Generator* const generator = FindGenerator(choice.scene);
+  if (generator == nullptr || generator->other_view.name != choice.camera)
+    throw UsageError(
+        fmt::format("--camera {}: scene {} has no such view (rings have above, "
+                    "teapot has side)",
+                    choice.camera, choice.scene));
+  return generator->other_view.view(SizeOf(*generator, choice.size));
+}
+
 }  // namespace
 
 std::string TextOf(const SceneChoice& choice) {
@@ -57,15 +69,9 @@ Scene SceneFrom(const SceneChoice& choice, std::string_view text) {
 }
 
 View ViewOf(const SceneChoice& choice, const View& own) {
-  if (choice.camera == "default") return own;
-  if (!IsNamedView(choice.camera)) return ReadNffView(choice.camera);
-  const Generator* const generator = FindGenerator(choice.scene);
-  if (generator == nullptr || generator->other_view.name != choice.camera)
-    throw UsageError(
-        fmt::format("--camera {}: scene {} has no such view (rings have above, "
-                    "teapot has side)",
-                    choice.camera, choice.scene));
-  return generator->other_view.view(SizeOf(*generator, choice.size));
+  View view = CameraOf(choice, own);
+  if (choice.resolution.width > 0) view.resolution = choice.resolution;
+  return view;
 }
 
 Scene LoadScene(const SceneChoice& choice) {

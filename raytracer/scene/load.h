@@ -17,6 +17,8 @@ struct SceneChoice {
   std::uint64_t object_limit = 0;  // 0: all
   std::string camera = "default";  // "default", a further view of the scene, or a file
   std::uint64_t memory_limit = 0;  // bytes that it may take on a node; 0: what the node has
+  ImageSize resolution{};          // 0 x 0: that of the view
+  std::string patches = "auto";    // patches.h; LoadScene leaves them as they are
 };
 
 /// Errors: InputError for files, UsageError for a size or view that the scene does not have.

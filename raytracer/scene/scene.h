@@ -32,12 +32,21 @@ struct Light {
   double radius = 0;     // of a light that rays can meet (extension); 0: a point, as NFF has them
 };
 
+/// What was made of a scene's Bezier patches, and why (patches.h).
+struct PatchChoice {
+  std::size_t patches = 0;  // in the scene; 0: nothing had to be decided
+  int cells = 0;            // triangles: cells per side of a patch; 0: rays meet patches directly
+  double cells_needed = 0;  // for triangles off by less than kPatchErrorPixels
+  double error_pixels = 0;  // what the triangles are off by at the worst place; 0: there are none
+};
+
 struct Scene {
   Vec3 background;
   View view;
   std::vector<Light> lights;
   std::vector<Material> materials;
   Shapes shapes;
+  PatchChoice patches{};
 };
 
 /// Keeps `limit` objects: the largest spheres first (objects that are no spheres count as largest),

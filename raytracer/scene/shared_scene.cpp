@@ -8,6 +8,7 @@
 
 #include "raytracer/render/marks.h"
 #include "raytracer/scene/memory_need.h"
+#include "raytracer/scene/patches.h"
 #include "raytracer/stopwatch.h"
 
 namespace stipple::raytracer {
@@ -42,10 +43,13 @@ class Leader {
   /// Builds the model if it was not found, and keeps a large one.
   void Build() {
     if (found_) return;  // a mapped file, which takes no memory that others need
+    scene_.view = view_;
+    AdaptPatches(scene_, choice_.patches);
     RequireMemory(scene_.shapes, choice_.memory_limit);
     Model<Real> model = BuildModel<Real>(std::move(scene_.shapes), hierarchy_);
     made_ = {std::move(scene_), std::move(model)};
-    if (cache_) kept_ = cache_->Keep(made_);
+    // What becomes of patches depends on the view, which the name of a kept scene does not tell.
+    if (cache_ && made_.scene.patches.patches == 0) kept_ = cache_->Keep(made_);
   }
 
   const View& view() const { return view_; }

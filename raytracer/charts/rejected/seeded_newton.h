@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Another way to meet a patch: Newton's method from the middle of every one of n x n boxes that the
-// ray meets. With many boxes a reference that shares no idea with our own method beyond the
-// polynomial itself; with one, the textbook method that fails.
-#ifndef STIPPLE_TESTS_RAYTRACER_SEEDED_NEWTON_H
-#define STIPPLE_TESTS_RAYTRACER_SEEDED_NEWTON_H
+// ray meets. From one it goes to whatever sheet it likes; with 64 x 64, in long double, it is a
+// reference that shares nothing with the shipped method but the polynomial.
+// What replaces it: IntersectPatch in geometry/patch.h.
+#ifndef STIPPLE_RAYTRACER_CHARTS_REJECTED_SEEDED_NEWTON_H
+#define STIPPLE_RAYTRACER_CHARTS_REJECTED_SEEDED_NEWTON_H
 
 #include <vector>
 
@@ -12,7 +13,7 @@
 #include "raytracer/geometry/patch.h"
 #include "raytracer/geometry/shapes.h"
 
-namespace stipple::raytracer {
+namespace stipple::raytracer::rejected {
 
 template <class Real>
 class SeededNewton {
@@ -27,8 +28,8 @@ class SeededNewton {
         coarse_boxes_.push_back({});
         for (int k = 0; k < fine * fine; ++k) {
           const int row = i * fine + k / fine, column = j * fine + k % fine;
-          Box box{HullOfPart(row, column, all), (column + Real{0.5}) / all,
-                  (row + Real{0.5}) / all};
+          const Box box{HullOfPart(row, column, all), At(2 * column + 1, 2 * all),
+                        At(2 * row + 1, 2 * all)};
           coarse_boxes_.back().Include(box.bounds);
           boxes_.push_back(box);
         }
@@ -37,7 +38,7 @@ class SeededNewton {
   }
 
   PatchHit<Real> Nearest(const Ray<double>& ray) const {
-    const SlabRay slab(ray);
+    const SlabRay slab(ray, 1 + 1e-9);
     const Ray<Real> own{Converted<Real>(ray.origin), Converted<Real>(ray.direction)};
     PatchHit<Real> best;
     for (std::size_t i = 0; i < coarse_boxes_.size(); ++i) {
@@ -57,6 +58,8 @@ class SeededNewton {
     Bounds bounds;
     Real u, v;  // its middle
   };
+
+  static Real At(int part, int whole) { return static_cast<Real>(part) / static_cast<Real>(whole); }
 
   static bool IsMet(const Bounds& box, const SlabRay& ray) {
     return EnterBounds(box, ray, kMiss<double>) != kMiss<double>;
@@ -79,10 +82,8 @@ class SeededNewton {
       for (std::size_t j = 0; j < 4; ++j) {
         Vec<Real> rows[4];
         for (std::size_t k = 0; k < 4; ++k)
-          rows[k] = PartOf(control_ + 4 * k, static_cast<Real>(column) / all,
-                           static_cast<Real>(column + 1) / all, j);
-        const Vec<Real> p =
-            PartOf(rows, static_cast<Real>(row) / all, static_cast<Real>(row + 1) / all, i);
+          rows[k] = PartOf(control_ + 4 * k, At(column, all), At(column + 1, all), j);
+        const Vec<Real> p = PartOf(rows, At(row, all), At(row + 1, all), i);
         const double slack = 1e-6;
         const Vec3 point{static_cast<double>(p.x), static_cast<double>(p.y),
                          static_cast<double>(p.z)};
@@ -145,6 +146,6 @@ PatchHit<Real> NearestOf(const std::vector<SeededNewton<Real>>& patches, const R
   return best;
 }
 
-}  // namespace stipple::raytracer
+}  // namespace stipple::raytracer::rejected
 
 #endif
