@@ -104,11 +104,12 @@ Decision Precision(const SceneFacts& facts, const Options& options) {
 }
 
 Decision Shape(const SceneFacts& facts, const Options&) {
-  return {"as they are",
-          fmt::format("{} spheres, {} cones, {} triangles, {} polygons: none is cut into "
-                      "triangles, which would take 100 times the memory for a worse picture",
-                      facts.CountOf(ShapeKind::kSphere), facts.CountOf(ShapeKind::kCone),
-                      facts.CountOf(ShapeKind::kTriangle), facts.CountOf(ShapeKind::kPolygon))};
+  return {
+      "as they are",
+      fmt::format("{} spheres, {} cones, {} triangles, {} polygons: quadrics are met exactly, cut "
+                  "into triangles they would take 100 times the memory for a worse picture",
+                  facts.CountOf(ShapeKind::kSphere), facts.CountOf(ShapeKind::kCone),
+                  facts.CountOf(ShapeKind::kTriangle), facts.CountOf(ShapeKind::kPolygon))};
 }
 
 Decision Patches(const SceneFacts& facts, const Options& options) {

@@ -57,8 +57,10 @@ struct Descriptor {
 
 FileText::FileText(const std::string& path) {
   const Descriptor file(path);
+  if (file.number < 0)
+    throw InputError(path, 0, fmt::format("cannot be read: {}", std::strerror(errno)));
   // One byte more than the file has, so that its end is met without growing.
-  std::size_t room = file.number >= 0 ? file.Size() + 1 : 1;
+  std::size_t room = file.Size() + 1;
   for (;;) {
     auto more = std::make_unique_for_overwrite<char[]>(room);
     std::copy_n(text_.get(), size_, more.get());
