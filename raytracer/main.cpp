@@ -6,10 +6,13 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
 #include <fstream>
 
 #include "raytracer/errors.h"
 #include "raytracer/geometry/kernel.h"
+#include "raytracer/image/compare.h"
+#include "raytracer/image/exr_file.h"
 #include "raytracer/image/png_file.h"
 #include "raytracer/options.h"
 #include "raytracer/render/marks.h"
@@ -25,31 +28,37 @@ namespace {
 constexpr int kDifferent = 1;  // exit status of --compare
 constexpr int kUnusable = 2;   // exit status after InputError and UsageError
 
-/// Seconds since it was made or last asked.
+/// Seconds since it was made or last asked: of the clock on the wall, and of CPU time of the
+/// process.
 class Stopwatch {
  public:
   double Lap() {
     const double now = MPI_Wtime();
     return now - std::exchange(start_, now);
   }
+  double LapCpu() {
+    const double now = CpuSeconds();
+    return now - std::exchange(cpu_start_, now);
+  }
 
  private:
+  static double CpuSeconds() {
+    timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+  }
+
   double start_ = MPI_Wtime();
+  double cpu_start_ = CpuSeconds();
 };
 
 int PrintComparison(const Options& options) {
-  const Image a = ReadPng(options.compare.first);
-  const Image b = ReadPng(options.compare.second);
+  const LinearImage a = ReadPicture(options.compare.first);
+  const LinearImage b = ReadPicture(options.compare.second);
   const ImageDifference difference = Compare(a, b);
-  if (!difference.same_size)
-    fmt::print("different sizes: {}x{} and {}x{} pixels\n", a.size.width, a.size.height,
-               b.size.width, b.size.height);
-  else if (difference.Identical())
-    fmt::print("identical: {}x{} pixels, max difference 0, RMS difference 0\n", a.size.width,
-               a.size.height);
-  else
-    fmt::print("different: {} of {}x{} pixels, max difference {} of 255, RMS difference {:.4f}\n",
-               difference.pixels, a.size.width, a.size.height, difference.max, difference.rms);
+  if (!options.output.empty() && difference.SameSize())
+    WritePng(DifferencePicture(a, b), options.output);
+  fmt::print("{}", DifferenceText(difference));
   return difference.Identical() ? 0 : kDifferent;
 }
 
@@ -63,22 +72,30 @@ Scene Load(const World& world, const Options& options) {
 }
 
 template <class Real>
-Model<Real> Build(const World& world, Scene& scene) {
+Model<Real> Build(const World& world, Scene& scene, const Options& options) {
   Mark(Moment::kBuildBegins);
-  return OnAllRanks(world, [&] { return BuildModel<Real>(std::move(scene.shapes)); });
+  return OnAllRanks(world, [&] {
+    return BuildModel<Real>(std::move(scene.shapes), HierarchyFor(options.kernel));
+  });
+}
+
+template <class Real>
+std::uint64_t BytesOf(Model<Real>& model) {
+  std::uint64_t bytes = 0;
+  model.ForEachArray([&bytes](const auto& array) { bytes += array.size() * sizeof(array[0]); });
+  return bytes;
 }
 
 template <class Real>
 Rendered RenderScene(const World& world, const Scene& scene, const Model<Real>& model,
-                     const Options& options) {
+                     const Kernel<Real>& kernel, const Options& options) {
   const ImageSize image = scene.view.resolution;
   const PartitionChoice choice{RasterOf(image, options.samples), options.tile,
                                static_cast<std::uint32_t>(options.bundle), options.select,
                                static_cast<std::uint64_t>(options.seed)};
-  const auto kernel = OnAllRanks(world, [&] { return MakeKernel(options.kernel, model); });
   const ShadingChoice shading{static_cast<int>(options.max_depth), options.min_contribution};
-  const auto sampler = MakeSampler(scene, model, *kernel, shading, image, options.samples);
-  return Render(world, *sampler, options.partition, choice);
+  const auto sampler = MakeSampler(scene, model, kernel, shading, image, options.samples);
+  return Render(world, *sampler, options.partition, choice, options.samples);
 }
 
 void WriteText(const std::string& text, const std::string& path) {
@@ -90,7 +107,10 @@ void WriteText(const std::string& text, const std::string& path) {
 
 void WritePictures(const Raster& raster, ImageSize image, const Options& options) {
   Mark(Moment::kOutputBegins);
-  if (!options.output.empty()) WritePng(PictureOf(raster, image, options.samples), options.output);
+  if (options.output.ends_with(".exr"))
+    WriteExr(LinearPictureOf(raster, image, options.samples), options.output);
+  else if (!options.output.empty())
+    WritePng(PictureOf(raster, image, options.samples), options.output);
   if (options.cost_map.ends_with(".png"))
     WritePng(CostImageOf(raster, image, options.samples), options.cost_map);
   else if (!options.cost_map.empty())
@@ -117,19 +137,26 @@ void OnRank(const World& world, int rank, Work work) {
 template <class Real>
 void RenderAndReport(const World& world, Scene& scene, const Options& options, RankReport report) {
   Stopwatch watch;
-  const Model<Real> model = Build<Real>(world, scene);
+  Model<Real> model = Build<Real>(world, scene, options);
+  const auto kernel = OnAllRanks(world, [&] { return MakeKernel(options.kernel, model); });
   report.build_s = watch.Lap();
-  const Rendered rendered = RenderScene(world, scene, model, options);
+  report.build_cpu_s = watch.LapCpu();
+  const Rendered rendered = RenderScene(world, scene, model, *kernel, options);
   report.render_s = watch.Lap();
+  report.render_cpu_s = watch.LapCpu();
   report.counts = rendered.counts;
   report.messages = rendered.messages;
-  OnRank(world, AssemblingRank(world, options.partition),
-         [&] { WritePictures(rendered.raster, scene.view.resolution, options); });
-  const RunReport run{model.objects.size(), GatherReports(world, report)};
+  OnRank(world, AssemblingRank(world, options.partition), [&] {
+    const ImageSize image = scene.view.resolution;
+    report.loss = LossOf(rendered.raster, image, options.samples);
+    WritePictures(rendered.raster, image, options);
+  });
+  const RunReport run{model.objects.size(), BytesOf(model), GatherReports(world, report)};
   OnRank(world, 0, [&] { WriteReport(run, options); });
 }
 
 void LoadAndRender(const World& world, const Options& options) {
+  if (options.output.ends_with(".exr")) OnRank(world, 0, [&] { NeedExr(options.output); });
   Stopwatch watch;
   RankReport report;
   Scene scene = Load(world, options);

@@ -97,8 +97,10 @@ class Setter {
                         static_cast<int>(ToCount(spec_, text_, all.substr(cross + 1)))};
   }
   void operator()(Samples Options::*member) const {
-    (options_.*member).per_pixel =
-        text_ == "corners" ? 0 : static_cast<int>(ToCount(spec_, text_, text_));
+    Samples& samples = options_.*member;
+    samples.adaptive = text_ == "adaptive";
+    const bool named = samples.adaptive || text_ == "corners";
+    samples.per_pixel = named ? 0 : static_cast<int>(ToCount(spec_, text_, text_));
   }
   void operator()(std::pair<std::string, std::string> Options::*member) const {
     options_.*member = {words_.at(0), words_.at(1)};
@@ -141,7 +143,9 @@ void AddRow(CLI::App& app, const OptionSpec& spec, Options& options) {
                  fmt::format("{}{}", spec.meaning,
                              preset.empty() ? "" : fmt::format(" (default {})", preset)))
       ->type_name(std::string(spec.value))
-      ->type_size(is_switch ? 0 : pair ? 2 : 1)
+      ->type_size(is_switch ? 0
+                  : pair    ? 2
+                            : 1)
       ->multi_option_policy(pair ? CLI::MultiOptionPolicy::Throw
                                  : CLI::MultiOptionPolicy::TakeLast);
 }
@@ -169,6 +173,7 @@ Options ParseOptions(int argc, const char* const* argv) {
   if (!unknown.empty())
     throw UsageError(
         fmt::format("{}: unknown option; known are{}", unknown.front(), KnownOptions()));
+  options.samples.tolerance = options.tolerance;
   return options;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "raytracer/render/picture.h"
 #include "raytracer/render/tracer.h"
 #include "raytracer/render/world.h"
 
@@ -16,20 +17,25 @@ namespace stipple::raytracer {
 struct RankReport {
   RayCounts counts;
   std::uint64_t messages = 0;
+  LossBound loss;  // of the picture; nothing on ranks that do not have it
   double load_s = 0, build_s = 0, render_s = 0;
+  double build_cpu_s = 0, render_cpu_s = 0;  // of the process, all its threads
 };
 
 struct RunReport {
   std::uint64_t objects = 0;
+  std::uint64_t model_bytes = 0;  // of the shapes and their hierarchy, Model's arrays
   std::vector<RankReport> ranks;
 };
 
 /// On rank 0 the reports of all ranks in order, elsewhere nothing; every rank calls it.
 std::vector<RankReport> GatherReports(const World& world, const RankReport& report);
 
-/// JSON with the keys objects eye_rays eye_hits shadow_rays shadow_hits reflected_rays
-/// refracted_rays box_tests primitive_tests load_s build_s render_s messages ranks (integers,
-/// seconds; times are the slowest rank's), and `work`: box and primitive tests of each rank.
+/// JSON with the keys objects model_bytes eye_rays eye_hits shadow_rays shadow_hits reflected_rays
+/// refracted_rays box_tests primitive_tests load_s build_s render_s build_cpu_s render_cpu_s
+/// messages ranks (integers, seconds; times are the slowest rank's), lost_mean lost_worst (how much
+/// brighter pixels could be if every ray had been followed; of 1), and `work`: box and primitive
+/// tests of each rank.
 std::string StatsJson(const RunReport& report);
 
 /// A headline and a few lines.

@@ -178,9 +178,9 @@ auto AllConverted(const std::vector<From>& elements) {
 }  // namespace
 
 template <class Real>
-Model<Real> BuildModel(Shapes&& shapes) {
+Model<Real> BuildModel(Shapes&& shapes, Hierarchy hierarchy) {
   Builder builder(shapes);
-  builder.Build();
+  if (hierarchy == Hierarchy::kOfModel) builder.Build();
   const std::vector<std::uint32_t>& order = builder.order();
   std::vector<Object>& objects = shapes.objects;
   Model<Real> model;
@@ -203,8 +203,8 @@ Model<Real> BuildModel(Shapes&& shapes) {
   return model;
 }
 
-template Model<float> BuildModel(Shapes&&);
-template Model<double> BuildModel(Shapes&&);
-template Model<long double> BuildModel(Shapes&&);
+template Model<float> BuildModel(Shapes&&, Hierarchy);
+template Model<double> BuildModel(Shapes&&, Hierarchy);
+template Model<long double> BuildModel(Shapes&&, Hierarchy);
 
 }  // namespace stipple::raytracer

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "raytracer/errors.h"
+#include "raytracer/geometry/embree_kernel.h"
 #include "raytracer/geometry/intersect.h"
 #include "raytracer/geometry/kernel.h"
 
@@ -169,7 +170,9 @@ class ScalarKernel final : public Kernel<Real> {
 template <class Real>
 std::unique_ptr<Kernel<Real>> MakeKernel(std::string_view name, const Model<Real>& model) {
   if (name == "bvh" || name == "scalar") return std::make_unique<ScalarKernel<Real>>(model);
-  throw UsageError(std::string("--kernel ") + std::string(name) + ": not in this build");
+  if constexpr (!std::is_same_v<Real, long double>)
+    if (name == "embree") return MakeEmbreeKernel(model);
+  throw UsageError("--kernel " + std::string(name) + ": cannot compute in this kind of number");
 }
 
 template std::unique_ptr<Kernel<float>> MakeKernel(std::string_view, const Model<float>&);

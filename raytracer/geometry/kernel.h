@@ -44,10 +44,15 @@ class Kernel {
 };
 
 /// Kernels by the names of --kernel: "bvh", "scalar" (the same without vector instructions: the
-/// same hits, bit for bit), "embree" (float inside). The model must outlive the kernel. Errors:
-/// UsageError for a kernel that cannot trace this model.
+/// same hits, bit for bit), "embree" (float inside; counts no tests). The model must outlive the
+/// kernel. Errors: UsageError for a kernel that cannot trace this model.
 template <class Real>
 std::unique_ptr<Kernel<Real>> MakeKernel(std::string_view name, const Model<Real>& model);
+
+/// Who brings the hierarchy that this kernel walks.
+inline Hierarchy HierarchyFor(std::string_view kernel) {
+  return kernel == "embree" ? Hierarchy::kOfKernel : Hierarchy::kOfModel;
+}
 
 }  // namespace stipple::raytracer
 

@@ -63,13 +63,16 @@ struct Model {
   }
 };
 
-/// Builds the hierarchy and lays the shapes out in the order of its leaves; object numbers stay.
+/// Who brings the hierarchy: the model, or a kernel that makes its own.
+enum class Hierarchy { kOfModel, kOfKernel };
+
+/// Builds the hierarchy (none if the kernel makes its own) and lays the shapes out in the order of its leaves; object numbers stay.
 /// `shapes` is used up, so that a large scene is not in memory twice.
 ///
 /// Binned surface-area heuristic (Wald, "On fast Construction of SAH-based Bounding Volume
 /// Hierarchies", 2007); the same objects in the same order give the same model on every machine.
 template <class Real>
-Model<Real> BuildModel(Shapes&& shapes);
+Model<Real> BuildModel(Shapes&& shapes, Hierarchy hierarchy = Hierarchy::kOfModel);
 
 }  // namespace stipple::raytracer
 

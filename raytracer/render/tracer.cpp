@@ -7,6 +7,7 @@
 
 #include "raytracer/geometry/intersect.h"
 #include "raytracer/geometry/surface.h"
+#include "raytracer/render/offset.h"
 
 namespace stipple::raytracer {
 namespace {
@@ -14,12 +15,6 @@ namespace {
 /// Brighter than white by this much is as bright as a ray gets: sums of many rays stay far from
 /// 2^63.
 constexpr double kBrightest = 1024;
-
-std::int64_t ToFixed(double value) {
-  const double bounded = std::clamp(value, -kBrightest, kBrightest);
-  return static_cast<std::int64_t>(bounded * static_cast<double>(kFixedOne) +
-                                   std::copysign(0.5, bounded));
-}
 
 template <class Real>
 void Deposit(Vec<Real> color, FixedColor& sum) {
@@ -42,6 +37,27 @@ Vec<Real> Reflected(Vec<Real> direction, Vec<Real> normal) {
 
 }  // namespace
 
+std::int64_t ToFixed(double value) {
+  const double bounded = std::clamp(value, -kBrightest, kBrightest);
+  return static_cast<std::int64_t>(bounded * static_cast<double>(kFixedOne) +
+                                   std::copysign(0.5, bounded));
+}
+
+void Add(const RayResult& more, RayResult& sum) {
+  if (sum.rays == 0) {
+    sum = more;
+    return;
+  }
+  sum.color.red += more.color.red;
+  sum.color.green += more.color.green;
+  sum.color.blue += more.color.blue;
+  sum.lost += more.lost;
+  sum.squares += more.squares;
+  sum.work += more.work;
+  sum.rays = static_cast<std::uint16_t>(sum.rays + more.rays);
+  sum.depth = std::max(sum.depth, more.depth);
+}
+
 template <class Real, Rules kRules>
 Tracer<Real, kRules>::Tracer(const Scene& scene, const Model<Real>& model,
                              const Kernel<Real>& kernel, ShadingChoice choice)
@@ -51,7 +67,7 @@ Tracer<Real, kRules>::Tracer(const Scene& scene, const Model<Real>& model,
       largest_colors_(LargestColors(scene)),
       max_depth_(choice.max_depth),
       min_contribution_(static_cast<Real>(choice.min_contribution)),
-      relative_offset_(32 * kernel.Rounding()) {}
+      rounding_(kernel.Rounding()) {}
 
 template <class Real, Rules kRules>
 [[gnu::noinline]] void Tracer<Real, kRules>::TraceEye(const Ray<Real>& ray, RayResult& result) {
@@ -125,9 +141,7 @@ typename Tracer<Real, kRules>::Surface Tracer<Real, kRules>::SurfaceAt(const Ray
   surface.face = surface.leaving ? -normals.face : normals.face;
   surface.normal = surface.leaving ? -normals.shading : normals.shading;
   surface.mirrored = Reflected(ray.direction, surface.normal);
-  // Relative to the size of the numbers at hand, so that a scene may be scaled or moved; a fixed
-  // distance may not.
-  surface.offset = relative_offset_ * std::max(MaxNorm(surface.point), hit.t);
+  surface.offset = SurfaceOffset(surface.point, hit.t, rounding_);
   return surface;
 }
 

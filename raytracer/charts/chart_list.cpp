@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#include "raytracer/charts/chart_list.h"
+
+namespace stipple::raytracer {
+namespace {
+
+constexpr ChartEntry kCharts[] = {
+    {"sampling", SamplingChart, "rays per pixel and where they go, against 1024 rays per pixel"},
+    {"depth", DepthChart, "how far reflections are followed, against all of them"},
+    {"quadrics", QuadricsChart, "spheres as they are, or as triangles"},
+};
+
+}  // namespace
+
+std::span<const ChartEntry> Charts() { return kCharts; }
+
+}  // namespace stipple::raytracer

@@ -1,0 +1,355 @@
+// SPDX-License-Identifier: MIT
+// Each kind of shape is one Embree geometry, in what Embree knows best: spheres as sphere points,
+// cones as linear curves without caps, triangles, and polygons of four convex corners as quads.
+// Other polygons are user geometry: Embree calls back for them, one ray and one primitive at a
+// time.
+#include "raytracer/geometry/embree_kernel.h"
+
+#include <embree3/rtcore.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "raytracer/errors.h"
+#include "raytracer/geometry/intersect.h"
+
+namespace stipple::raytracer {
+namespace {
+
+/// Embree leaves out whatever reaches farther than this (its FLT_LARGE).
+constexpr double kFarthest = 1.8e18;
+
+[[noreturn]] void Refuse(const std::string& problem) {
+  throw UsageError("--kernel embree: " + problem);
+}
+
+/// Releases Embree's reference-counted objects.
+struct Release {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+  void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
+};
+template <class Handle>
+using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Release>;
+
+/// Numbers of the geometries in the scene.
+enum GeometryNumber : unsigned { kSpheres, kCones, kTriangles, kQuads, kPolygons, kGeometries };
+
+/// The ray as it was asked, for callbacks: they compute in the model's kind of number.
+template <class Real>
+struct Context {
+  RTCIntersectContext embree;  // first: callbacks are handed a pointer to it
+  const Ray<Real>* ray;
+
+  explicit Context(const Ray<Real>& asked) : ray(&asked) { rtcInitIntersectContext(&embree); }
+};
+
+template <class Real>
+RTCRay EmbreeRay(const Ray<Real>& ray, Real max_t) {
+  const auto number = [](Real x) { return static_cast<float>(x); };
+  RTCRay made;
+  made.org_x = number(ray.origin.x);
+  made.org_y = number(ray.origin.y);
+  made.org_z = number(ray.origin.z);
+  made.tnear = 0;
+  made.dir_x = number(ray.direction.x);
+  made.dir_y = number(ray.direction.y);
+  made.dir_z = number(ray.direction.z);
+  made.time = 0;
+  made.tfar = number(max_t);
+  made.mask = ~0U;
+  made.id = 0;
+  made.flags = 0;
+  return made;
+}
+
+/// Bounds in float, rounded outwards.
+void SetBounds(const Bounds& box, RTCBounds& bounds) {
+  constexpr float kFar = std::numeric_limits<float>::infinity();
+  const auto below = [](double x) { return std::nextafter(static_cast<float>(x), -kFar); };
+  const auto above = [](double x) { return std::nextafter(static_cast<float>(x), kFar); };
+  bounds.lower_x = below(box.low.x);
+  bounds.lower_y = below(box.low.y);
+  bounds.lower_z = below(box.low.z);
+  bounds.upper_x = above(box.high.x);
+  bounds.upper_y = above(box.high.y);
+  bounds.upper_z = above(box.high.z);
+}
+
+/// `rtcNewDevice` on one thread: ranks share a node's cores, and builds are compared by CPU time.
+Owned<RTCDevice> NewDevice() {
+  Owned<RTCDevice> device(rtcNewDevice("threads=1,set_affinity=0"));
+  if (device == nullptr)
+    Refuse("Embree cannot start: error " + std::to_string(rtcGetDeviceError(nullptr)));
+  return device;
+}
+
+template <class Real>
+class EmbreeKernel final : public Kernel<Real> {
+ public:
+  explicit EmbreeKernel(const Model<Real>& model)
+      : model_(model), device_(NewDevice()), scene_(rtcNewScene(device_.get())) {
+    rtcSetDeviceErrorFunction(device_.get(), KeepMessage, &error_);
+    rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_MEDIUM);
+    SortObjects();
+    AddSpheres();
+    AddCones();
+    AddTriangles();
+    AddQuads();
+    AddPolygons();
+    rtcCommitScene(scene_.get());
+    if (!error_.empty()) Refuse(error_);
+    rtcSetDeviceErrorFunction(device_.get(), nullptr, nullptr);
+  }
+
+  [[gnu::noinline]] Hit<Real> Intersect(const Ray<Real>& ray, TestCounts&) const override {
+    Context<Real> context(ray);
+    RTCRayHit found;
+    found.ray = EmbreeRay(ray, std::numeric_limits<Real>::infinity());
+    found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    found.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(scene_.get(), &context.embree, &found);
+    const RTCHit& hit = found.hit;
+    if (hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+    return {found.ray.tfar, objects_[hit.geomID][hit.primID], hit.u, hit.v};
+  }
+
+  [[gnu::noinline]] bool Occluded(const Ray<Real>& ray, Real max_t, TestCounts&) const override {
+    Context<Real> context(ray);
+    RTCRay asked = EmbreeRay(ray, max_t);
+    rtcOccluded1(scene_.get(), &context.embree, &asked);
+    return asked.tfar < 0;  // minus infinity: found
+  }
+
+  Real Rounding() const override { return std::numeric_limits<float>::epsilon(); }
+
+ private:
+  static void KeepMessage(void* kept, RTCError, const char* text) {
+    auto& message = *static_cast<std::string*>(kept);
+    if (message.empty()) message = text;
+  }
+
+  /// Object numbers by geometry; an object's position in its list is its primitive number.
+  void SortObjects() {
+    for (std::uint32_t number = 0; number < model_.objects.size(); ++number)
+      objects_[GeometryOf(model_.objects[number])].push_back(number);
+  }
+
+  GeometryNumber GeometryOf(const Object& object) const {
+    switch (object.kind) {
+      case ShapeKind::kSphere:
+        return kSpheres;
+      case ShapeKind::kCone:
+        return kCones;
+      case ShapeKind::kTriangle:
+        return kTriangles;
+      case ShapeKind::kPolygon:
+        return IsConvexQuad(model_.polygons[object.index]) ? kQuads : kPolygons;
+      case ShapeKind::kPatch:
+        break;
+    }
+    Refuse("this kernel does not know Bezier patches");
+  }
+
+  bool IsConvexQuad(const Polygon<Real>& polygon) const {
+    if (polygon.vertex_count != 4) return false;
+    const auto vertex = [&](std::uint32_t i) {
+      return model_.vertices[polygon.first_vertex + i % 4];
+    };
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      const Vec<Real> corner = Cross(vertex(i + 1) - vertex(i), vertex(i + 2) - vertex(i + 1));
+      if (!(Dot(corner, polygon.normal) > 0)) return false;
+    }
+    return true;
+  }
+
+  /// The shape of the primitive `i` of a geometry.
+  template <class Shape>
+  const Shape& ShapeOf(const Array<Shape>& shapes, GeometryNumber geometry, std::size_t i) const {
+    return shapes[model_.objects[objects_[geometry][i]].index];
+  }
+
+  Owned<RTCGeometry> NewGeometry(RTCGeometryType type) const {
+    Owned<RTCGeometry> geometry(rtcNewGeometry(device_.get(), type));
+    if (geometry == nullptr) Refuse(error_);
+    return geometry;
+  }
+
+  void Attach(const Owned<RTCGeometry>& geometry, GeometryNumber number) const {
+    rtcCommitGeometry(geometry.get());
+    rtcAttachGeometryByID(scene_.get(), geometry.get(), number);
+  }
+
+  template <class Element>
+  Element* NewBuffer(const Owned<RTCGeometry>& geometry, RTCBufferType type, RTCFormat format,
+                     std::size_t count) const {
+    void* const buffer =
+        rtcSetNewGeometryBuffer(geometry.get(), type, 0, format, sizeof(Element), count);
+    if (buffer == nullptr) Refuse(error_);
+    return static_cast<Element*>(buffer);
+  }
+
+  /// A coordinate or radius as Embree keeps it.
+  static float Stored(Real number) {
+    if (!(std::abs(number) < kFarthest)) Refuse("an object lies farther out than Embree can hold");
+    return static_cast<float>(number);
+  }
+
+  using Point = std::array<float, 3>;
+  using Ball = std::array<float, 4>;  // centre, radius
+  static Point StoredPoint(Vec<Real> p) { return {Stored(p.x), Stored(p.y), Stored(p.z)}; }
+  static Ball StoredBall(Vec<Real> p, Real radius) {
+    return {Stored(p.x), Stored(p.y), Stored(p.z), std::abs(Stored(radius))};
+  }
+
+  void AddSpheres() {
+    const std::size_t count = objects_[kSpheres].size();
+    if (count == 0) return;
+    const auto geometry = NewGeometry(RTC_GEOMETRY_TYPE_SPHERE_POINT);
+    Ball* const balls = NewBuffer<Ball>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Sphere<Real>& sphere = ShapeOf(model_.spheres, kSpheres, i);
+      balls[i] = StoredBall(sphere.center, sphere.radius);
+    }
+    Attach(geometry, kSpheres);
+  }
+
+  /// A segment that claims to have neighbours at both ends has no caps there.
+  void AddCones() {
+    const std::size_t count = objects_[kCones].size();
+    if (count == 0) return;
+    const auto geometry = NewGeometry(RTC_GEOMETRY_TYPE_CONE_LINEAR_CURVE);
+    Ball* const ends =
+        NewBuffer<Ball>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, 2 * count);
+    auto* const first_ends =
+        NewBuffer<std::uint32_t>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT, count);
+    auto* const flags =
+        NewBuffer<std::uint8_t>(geometry, RTC_BUFFER_TYPE_FLAGS, RTC_FORMAT_UCHAR, count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Cone<Real>& cone = ShapeOf(model_.cones, kCones, i);
+      ends[2 * i] = StoredBall(cone.base, cone.base_radius);
+      ends[2 * i + 1] = StoredBall(cone.apex, cone.apex_radius);
+      first_ends[i] = static_cast<std::uint32_t>(2 * i);
+      flags[i] = RTC_CURVE_FLAG_NEIGHBOR_LEFT | RTC_CURVE_FLAG_NEIGHBOR_RIGHT;
+    }
+    Attach(geometry, kCones);
+  }
+
+  /// Makes room for the corners of all faces and numbers them in order.
+  Point* NewCorners(const Owned<RTCGeometry>& geometry, RTCFormat face_format, std::size_t faces,
+                    std::size_t corners_of_one) const {
+    const std::size_t count = faces * corners_of_one;
+    void* const indices =
+        rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, face_format,
+                                corners_of_one * sizeof(std::uint32_t), faces);
+    if (indices == nullptr) Refuse(error_);
+    for (std::uint32_t i = 0; i < count; ++i) static_cast<std::uint32_t*>(indices)[i] = i;
+    return NewBuffer<Point>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, count);
+  }
+
+  void AddTriangles() {
+    const std::size_t count = objects_[kTriangles].size();
+    if (count == 0) return;
+    const auto geometry = NewGeometry(RTC_GEOMETRY_TYPE_TRIANGLE);
+    Point* const corners = NewCorners(geometry, RTC_FORMAT_UINT3, count, 3);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Triangle<Real>& triangle = ShapeOf(model_.triangles, kTriangles, i);
+      for (std::size_t j = 0; j < 3; ++j) {
+        const Real(&c)[3] = triangle.corner[j];
+        corners[3 * i + j] = StoredPoint({c[0], c[1], c[2]});
+      }
+    }
+    Attach(geometry, kTriangles);
+  }
+
+  void AddQuads() {
+    const std::size_t count = objects_[kQuads].size();
+    if (count == 0) return;
+    const auto geometry = NewGeometry(RTC_GEOMETRY_TYPE_QUAD);
+    Point* const corners = NewCorners(geometry, RTC_FORMAT_UINT4, count, 4);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Polygon<Real>& polygon = ShapeOf(model_.polygons, kQuads, i);
+      for (std::size_t j = 0; j < 4; ++j)
+        corners[4 * i + j] = StoredPoint(model_.vertices[polygon.first_vertex + j]);
+    }
+    Attach(geometry, kQuads);
+  }
+
+  void AddPolygons() {
+    const std::size_t count = objects_[kPolygons].size();
+    if (count == 0) return;
+    const auto geometry = NewGeometry(RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry.get(), static_cast<unsigned>(count));
+    rtcSetGeometryUserData(geometry.get(), this);
+    rtcSetGeometryBoundsFunction(geometry.get(), PolygonBounds, nullptr);
+    rtcSetGeometryIntersectFunction(geometry.get(), IntersectPolygonCallback);
+    rtcSetGeometryOccludedFunction(geometry.get(), OccludedPolygonCallback);
+    Attach(geometry, kPolygons);
+  }
+
+  const Polygon<Real>& PolygonOf(std::uint32_t primitive) const {
+    return ShapeOf(model_.polygons, kPolygons, primitive);
+  }
+
+  static void PolygonBounds(const RTCBoundsFunctionArguments* arguments) {
+    const auto& kernel = *static_cast<const EmbreeKernel*>(arguments->geometryUserPtr);
+    const Polygon<Real>& polygon = kernel.PolygonOf(arguments->primID);
+    Bounds box;
+    for (std::uint32_t i = 0; i < polygon.vertex_count; ++i) {
+      const Vec<Real> v = kernel.model_.vertices[polygon.first_vertex + i];
+      box.Include(
+          Vec3{static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)});
+    }
+    SetBounds(box, *arguments->bounds_o);
+  }
+
+  /// Both kinds of callback: where the asked ray meets a polygon.
+  template <class Arguments>
+  static float PolygonDistance(const Arguments* arguments) {
+    const auto& kernel = *static_cast<const EmbreeKernel*>(arguments->geometryUserPtr);
+    const Polygon<Real>& polygon = kernel.PolygonOf(arguments->primID);
+    const std::span outline(kernel.model_.outlines.data() + polygon.first_vertex,
+                            polygon.vertex_count);
+    const Ray<Real>& ray = *reinterpret_cast<const Context<Real>*>(arguments->context)->ray;
+    return static_cast<float>(IntersectPolygon(polygon, outline, ray));
+  }
+
+  static void IntersectPolygonCallback(const RTCIntersectFunctionNArguments* arguments) {
+    if (arguments->valid[0] == 0) return;
+    auto& found = *reinterpret_cast<RTCRayHit*>(arguments->rayhit);  // N is 1
+    const float t = PolygonDistance(arguments);
+    if (!(t < found.ray.tfar)) return;
+    found.ray.tfar = t;
+    found.hit.geomID = arguments->geomID;
+    found.hit.primID = arguments->primID;
+    found.hit.u = found.hit.v = 0;
+  }
+
+  static void OccludedPolygonCallback(const RTCOccludedFunctionNArguments* arguments) {
+    if (arguments->valid[0] == 0) return;
+    auto& ray = *reinterpret_cast<RTCRay*>(arguments->ray);  // N is 1
+    if (PolygonDistance(arguments) < ray.tfar) ray.tfar = -std::numeric_limits<float>::infinity();
+  }
+
+  const Model<Real>& model_;
+  std::string error_;  // Embree's first complaint during the build
+  Owned<RTCDevice> device_;
+  Owned<RTCScene> scene_;
+  std::array<std::vector<std::uint32_t>, kGeometries> objects_;
+};
+
+}  // namespace
+
+template <class Real>
+std::unique_ptr<Kernel<Real>> MakeEmbreeKernel(const Model<Real>& model) {
+  return std::make_unique<EmbreeKernel<Real>>(model);
+}
+
+template std::unique_ptr<Kernel<float>> MakeEmbreeKernel(const Model<float>&);
+template std::unique_ptr<Kernel<double>> MakeEmbreeKernel(const Model<double>&);
+
+}  // namespace stipple::raytracer
