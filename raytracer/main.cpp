@@ -15,42 +15,21 @@
 #include "raytracer/image/exr_file.h"
 #include "raytracer/image/png_file.h"
 #include "raytracer/options.h"
+#include "raytracer/plan.h"
 #include "raytracer/render/marks.h"
 #include "raytracer/render/picture.h"
 #include "raytracer/render/render.h"
 #include "raytracer/report.h"
 #include "raytracer/scene/load.h"
 #include "raytracer/scene/nff.h"
+#include "raytracer/scene/shared_scene.h"
+#include "raytracer/stopwatch.h"
 
 namespace stipple::raytracer {
 namespace {
 
 constexpr int kDifferent = 1;  // exit status of --compare
 constexpr int kUnusable = 2;   // exit status after InputError and UsageError
-
-/// Seconds since it was made or last asked: of the clock on the wall, and of CPU time of the
-/// process.
-class Stopwatch {
- public:
-  double Lap() {
-    const double now = MPI_Wtime();
-    return now - std::exchange(start_, now);
-  }
-  double LapCpu() {
-    const double now = CpuSeconds();
-    return now - std::exchange(cpu_start_, now);
-  }
-
- private:
-  static double CpuSeconds() {
-    timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-  }
-
-  double start_ = MPI_Wtime();
-  double cpu_start_ = CpuSeconds();
-};
 
 int PrintComparison(const Options& options) {
   const LinearImage a = ReadPicture(options.compare.first);
@@ -62,38 +41,19 @@ int PrintComparison(const Options& options) {
   return difference.Identical() ? 0 : kDifferent;
 }
 
-Scene Load(const World& world, const Options& options) {
-  Mark(Moment::kLoadBegins);
-  const SceneChoice choice{options.scene, options.scene_size,
-                           static_cast<std::uint64_t>(options.object_limit), options.camera};
-  Scene scene = OnAllRanks(world, [&] { return LoadScene(choice); });
-  if (options.resolution.width > 0) scene.view.resolution = options.resolution;
-  return scene;
-}
-
-template <class Real>
-Model<Real> Build(const World& world, Scene& scene, const Options& options) {
-  Mark(Moment::kBuildBegins);
-  return OnAllRanks(world, [&] {
-    return BuildModel<Real>(std::move(scene.shapes), HierarchyFor(options.kernel));
-  });
-}
-
-template <class Real>
-std::uint64_t BytesOf(Model<Real>& model) {
-  std::uint64_t bytes = 0;
-  model.ForEachArray([&bytes](const auto& array) { bytes += array.size() * sizeof(array[0]); });
-  return bytes;
+SceneChoice ChoiceOf(const Options& options) {
+  return {options.scene, options.scene_size, static_cast<std::uint64_t>(options.object_limit),
+          options.camera, static_cast<std::uint64_t>(options.memory_limit)};
 }
 
 template <class Real>
 Rendered RenderScene(const World& world, const Scene& scene, const Model<Real>& model,
-                     const Kernel<Real>& kernel, const Options& options) {
+                     const Kernel<Real>& kernel, int depth, const Options& options) {
   const ImageSize image = scene.view.resolution;
   const PartitionChoice choice{RasterOf(image, options.samples), options.tile,
                                static_cast<std::uint32_t>(options.bundle), options.select,
                                static_cast<std::uint64_t>(options.seed)};
-  const ShadingChoice shading{static_cast<int>(options.max_depth), options.min_contribution};
+  const ShadingChoice shading{depth, options.min_contribution};
   const auto sampler = MakeSampler(scene, model, kernel, shading, image, options.samples);
   return Render(world, *sampler, options.partition, choice, options.samples);
 }
@@ -134,14 +94,39 @@ void OnRank(const World& world, int rank, Work work) {
   });
 }
 
+/// What is decided for this scene; rank 0 says why if it is asked to.
 template <class Real>
-void RenderAndReport(const World& world, Scene& scene, const Options& options, RankReport report) {
+SceneFacts Adapt(const World& world, const Scene& scene, Model<Real>& model,
+                 const Options& options) {
+  const SceneFacts facts = FactsOf(scene, model);
+  OnAllRanks(world, [&] {
+    RequireDigits(facts, options);
+    return true;
+  });
+  OnRank(world, 0, [&] {
+    if (options.explain) fmt::print("{}", Explanation(facts, options));
+  });
+  return facts;
+}
+
+template <class Real>
+void RenderAndReport(const World& world, const Options& options) {
+  SharedScene<Real> shared =
+      SceneForAll<Real>(world, ChoiceOf(options), HierarchyFor(options.kernel));
+  Scene& scene = shared.scene;
+  if (options.resolution.width > 0) scene.view.resolution = options.resolution;
+  RankReport report;
+  report.load_s = shared.load_s;
+  report.build_s = shared.build_s;
+  report.build_cpu_s = shared.build_cpu_s;
   Stopwatch watch;
-  Model<Real> model = Build<Real>(world, scene, options);
-  const auto kernel = OnAllRanks(world, [&] { return MakeKernel(options.kernel, model); });
-  report.build_s = watch.Lap();
-  report.build_cpu_s = watch.LapCpu();
-  const Rendered rendered = RenderScene(world, scene, model, *kernel, options);
+  const auto kernel = OnAllRanks(world, [&] { return MakeKernel(options.kernel, shared.model); });
+  const SceneFacts facts = Adapt(world, scene, shared.model, options);
+  report.build_s += watch.Lap();
+  report.build_cpu_s += watch.LapCpu();
+  const Rendered rendered =
+      RenderScene(world, scene, shared.model, *kernel,
+                  DepthFor(facts, static_cast<int>(options.max_depth)), options);
   report.render_s = watch.Lap();
   report.render_cpu_s = watch.LapCpu();
   report.counts = rendered.counts;
@@ -151,25 +136,27 @@ void RenderAndReport(const World& world, Scene& scene, const Options& options, R
     report.loss = LossOf(rendered.raster, image, options.samples);
     WritePictures(rendered.raster, image, options);
   });
-  const RunReport run{model.objects.size(), BytesOf(model), GatherReports(world, report)};
-  OnRank(world, 0, [&] { WriteReport(run, options); });
+  const RunReport run{shared.model.objects.size(), facts.model_bytes, GatherReports(world, report)};
+  OnRank(world, 0, [&] {
+    WriteReport(run, options);
+    if (!shared.kept_in.empty()) fmt::print("  scene from {}\n", shared.kept_in);
+  });
+}
+
+void WriteScene(const Options& options) {
+  const Scene scene = LoadScene(ChoiceOf(options));
+  WriteNff(scene, options.write_scene);
+  fmt::print("wrote {}: {} objects\n", options.write_scene, scene.shapes.objects.size());
 }
 
 void LoadAndRender(const World& world, const Options& options) {
   if (options.output.ends_with(".exr")) OnRank(world, 0, [&] { NeedExr(options.output); });
-  Stopwatch watch;
-  RankReport report;
-  Scene scene = Load(world, options);
-  report.load_s = watch.Lap();
-  if (!options.write_scene.empty()) {
-    OnRank(world, 0, [&] { WriteNff(scene, options.write_scene); });
-    if (world.rank == 0)
-      fmt::print("wrote {}: {} objects\n", options.write_scene, scene.shapes.objects.size());
-  } else if (options.precision == "float") {
-    RenderAndReport<float>(world, scene, options, report);
-  } else {
-    RenderAndReport<double>(world, scene, options, report);
-  }
+  if (!options.write_scene.empty())
+    OnRank(world, 0, [&] { WriteScene(options); });
+  else if (options.precision == "float")
+    RenderAndReport<float>(world, options);
+  else
+    RenderAndReport<double>(world, options);
 }
 
 int Run(const World& world, int argc, char** argv) {

@@ -49,6 +49,17 @@ std::int64_t ToCount(const OptionSpec& spec, std::string_view text, std::string_
   return static_cast<std::int64_t>(value);
 }
 
+/// 1500000, 1.5M or 2G: powers of 1000.
+std::int64_t ToBytes(const OptionSpec& spec, std::string_view text) {
+  constexpr std::string_view kSuffixes = "KMGT";
+  const std::size_t power = text.empty() ? std::string_view::npos : kSuffixes.find(text.back());
+  if (power == std::string_view::npos) return ToCount(spec, text, text);
+  const double bytes = ToNumber(spec, text, text.substr(0, text.size() - 1)) *
+                       std::pow(1000.0, static_cast<double>(power + 1));
+  if (bytes > spec.high) Reject(spec, text, fmt::format("should be at most {}", spec.high));
+  return static_cast<std::int64_t>(bytes);
+}
+
 /// Names that are no choice may be files, which have a dot or a slash in their name: so a mistyped
 /// choice is noticed. Files with a fixed ending need it.
 void CheckText(const OptionSpec& spec, const std::string& text) {
@@ -84,7 +95,8 @@ class Setter {
     options_.*member = text_;
   }
   void operator()(std::int64_t Options::*member) const {
-    options_.*member = ToCount(spec_, text_, text_);
+    options_.*member =
+        spec_.value == "BYTES" ? ToBytes(spec_, text_) : ToCount(spec_, text_, text_);
   }
   void operator()(double Options::*member) const {
     options_.*member = ToNumber(spec_, text_, text_);
@@ -174,6 +186,8 @@ Options ParseOptions(int argc, const char* const* argv) {
     throw UsageError(
         fmt::format("{}: unknown option; known are{}", unknown.front(), KnownOptions()));
   options.samples.tolerance = options.tolerance;
+  if (options.kernel == "embree" && !options.cost_map.empty())
+    throw UsageError("--cost-map with --kernel embree: Embree does not count its tests");
   return options;
 }
 

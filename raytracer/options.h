@@ -34,6 +34,7 @@ struct Options {
   std::string precision = "double";
   std::string kernel = "bvh";
   std::string patches = "auto";
+  std::int64_t memory_limit = 0;
   std::string output;
   std::string cost_map;
   std::string stats;
@@ -60,9 +61,10 @@ struct OptionSpec {
 inline constexpr double kMostPoints = 1e9;
 
 inline constexpr OptionSpec kOptions[] = {
-    {"scene", &Options::scene, "balls|rings|teapot|tree|FILE.nff", "what to render"},
+    {"scene", &Options::scene, "balls|rings|teapot|teapot-patches|tree|FILE.nff", "what to render"},
     {"scene-size", &Options::scene_size, "N",
-     "size of a generated scene (balls 4, rings 7, teapot 12, tree 11)", 0, 100000},
+     "size of a generated scene (balls 4, rings 7, teapot and teapot-patches 12, tree 11)", 0,
+     100000},
     {"object-limit", &Options::object_limit, "N",
      "keep only N objects: of balls the largest, else the first (all)", 1, kMostPoints},
     {"camera", &Options::camera, "default|side|above|FILE",
@@ -94,6 +96,9 @@ inline constexpr OptionSpec kOptions[] = {
     {"patches", &Options::patches, "auto|direct|N",
      "Bezier patches as N x N pairs of triangles, by direct intersection, or as the picture needs",
      1, 1024},
+    {"memory-limit", &Options::memory_limit, "BYTES",
+     "refuse a scene that takes more on a node; K, M, G and T are understood (what the node has)",
+     1, 9e15},
     {"output", &Options::output, "F.png|F.exr",
      "write the picture, as 8-bit colours or as floating-point numbers"},
     {"cost-map", &Options::cost_map, "F.png|F.csv",

@@ -105,6 +105,7 @@ constexpr DarkColour kDark[] = {{kInk, "#e6ebf0"},
                                 {kLoadFill, "#4a3a1b"},
                                 {kLoadLine, "#e0a63c"},
                                 {kUserText, "#7db1ec"},
+                                {kTeal, "#4fb8ab"},
                                 {kEmptyCell, "#161c23"},
                                 {kOnPale, "#dfe7ef"},
                                 {kOnDeep, "#0b1420"},
@@ -143,7 +144,7 @@ std::string DarkSheet() {
     sheet +=
         fmt::format(".cells [fill=\"{}\"]{{fill:{}}}", Hex(RampColour(step)), Hex(DarkRamp(step)));
   for (std::size_t s = 0; s < kStateCount; ++s)
-    sheet += fmt::format(".legend .s{}{{background:{}!important}}", s, kDark[13 + s].dark);
+    sheet += fmt::format(".legend .s{}{{background:{}!important}}", s, kDark[14 + s].dark);
   return sheet + "}\n";
 }
 

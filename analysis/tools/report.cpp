@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // stipple report: computes what a report shows; the library that draws it is opened only here.
-#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <array>
@@ -10,6 +9,7 @@
 #include "analysis/stats/analysis.h"
 #include "analysis/tools/command.h"
 #include "analysis/tools/progress.h"
+#include "analysis/tools/views_library.h"
 #include "analysis/trace/input_error.h"
 
 namespace stipple {
@@ -18,15 +18,6 @@ namespace {
 constexpr std::size_t kColumns = 1000;
 
 using DrawFunction = decltype(&stipple_draw_report);
-
-DrawFunction OpenViews() {
-  const std::string path = LibraryDirectory() + "/libstipple-views.so";
-  void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (library == nullptr) throw InputError("stipple report", dlerror());
-  void* symbol = dlsym(library, "stipple_draw_report");
-  if (symbol == nullptr) throw InputError(path, "draws no reports");
-  return reinterpret_cast<DrawFunction>(symbol);
-}
 
 }  // namespace
 
@@ -41,7 +32,8 @@ int RunReport(const Arguments& arguments) {
   if (!Parse(app, arguments)) return 0;
   while (archive.size() > 1 && archive.back() == '/') archive.pop_back();
   if (output.empty()) output = std::filesystem::path(archive).stem().string() + ".html";
-  const DrawFunction draw = OpenViews();
+  const auto draw =
+      reinterpret_cast<DrawFunction>(FunctionOfViews("stipple report", "stipple_draw_report"));
   ProgressLine progress;
   const Trace trace = Trace::Open(archive, progress.meter());
   const Analysis analysis(trace);

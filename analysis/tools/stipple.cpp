@@ -22,11 +22,12 @@ constexpr Command kCommands[] = {
     {"stats", RunStats, "a table: profile, states, messages, volume, waits"},
     {"report", RunReport, "a self-contained HTML page"},
     {"compact", RunCompact, "make an archive smaller"},
+    {"exemplar", RunExemplar, "the ray tracer's experiments: charts on a page"},
 };
 
 std::string Help() {
   std::string text = "Usage: stipple COMMAND ...\n\nCommands (stipple COMMAND --help says more):\n";
-  for (const Command& c : kCommands) text += fmt::format("  {:<8}{}\n", c.name, c.description);
+  for (const Command& c : kCommands) text += fmt::format("  {:<9}{}\n", c.name, c.description);
   return text;
 }
 

@@ -22,6 +22,7 @@ inline constexpr Colour kQuietBar{0xc2, 0xc9, 0xd3};  // bars of those who are n
 inline constexpr Colour kBand{0xc9, 0xdc, 0xef};      // least to most
 inline constexpr Colour kLoadFill{0xfa, 0xe0, 0xb4};  // under the message-load line
 inline constexpr Colour kLoadLine{0xb8, 0x77, 0x0a};
+inline constexpr Colour kTeal{0x1f, 0x7a, 0x70};      // the fourth series of a chart
 inline constexpr Colour kUserText{0x2f, 0x66, 0xa8};  // state colour, dark enough for text
 inline constexpr Colour kWhite{0xff, 0xff, 0xff};
 inline constexpr Colour kEmptyCell{0xfe, 0xfe, 0xfe};

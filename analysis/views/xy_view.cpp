@@ -3,107 +3,166 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
+#include "analysis/views/label_room.h"
 #include "analysis/views/palette.h"
-#include "analysis/views/text.h"
 
 namespace stipple {
 namespace {
 
-constexpr double kLeft = 64, kRight = 24, kTop = 26, kBottom = 48;
-constexpr double kText = 12;
+constexpr double kLeft = 64, kRight = 24, kBottom = 48;
+constexpr double kTitleRoom = 26, kHeadingRoom = 24;
+constexpr double kText = 12, kHeadingText = 14;
+constexpr double kDisc = 4.5, kQuietDisc = 2.5, kRing = 9;
+
+/// Of the points, and of the words beside them.
+struct SeriesColour {
+  Colour disc, text;
+};
+constexpr SeriesColour kSeriesColours[] = {{kStateColours[0], kUserText},
+                                           {kLoadLine, kLoadLine},
+                                           {kStateColours[1], kStateColours[1]},
+                                           {kTeal, kTeal},
+                                           {kSecondary, kSecondary}};
+constexpr SeriesColour kQuiet{kQuietBar, kSecondary};
+
+SeriesColour ColourOf(const XySeries& series) {
+  return series.quiet ? kQuiet : kSeriesColours[series.colour % std::size(kSeriesColours)];
+}
 
 /// Where values lie in pixels.
 struct Plane {
   const XyChart& chart;
 
+  double Top() const { return kTitleRoom + (chart.heading.empty() ? 0 : kHeadingRoom); }
   double Right() const { return chart.width - kRight; }
   double Bottom() const { return chart.height - kBottom; }
-  static double Share(const XyAxis& axis, double value) {
-    const double power = value > 0 ? std::log10(value) : axis.least;
-    return std::clamp((power - axis.least) / (axis.most - axis.least), 0.0, 1.0);
-  }
-  Point At(double x, double y) const {
-    return {kLeft + Share(chart.x, x) * (Right() - kLeft),
-            Bottom() - Share(chart.y, y) * (Bottom() - kTop)};
-  }
+  double XOf(double x) const { return kLeft + chart.x.ShareOf(x) * (Right() - kLeft); }
+  double YOf(double y) const { return Bottom() - chart.y.ShareOf(y) * (Bottom() - Top()); }
+  Point At(const XyPoint& point) const { return {XOf(point.x), YOf(point.y)}; }
 };
 
-PolygonShape Disc(Point centre, double radius, Colour fill) {
+std::vector<Point> Circle(Point centre, double radius) {
   constexpr int kCorners = 24;
-  PolygonShape disc{{}, fill};
+  std::vector<Point> points;
   for (int i = 0; i < kCorners; ++i) {
     const double angle = 2 * std::numbers::pi * i / kCorners;
-    disc.points.push_back(
-        {centre.x + radius * std::cos(angle), centre.y + radius * std::sin(angle)});
+    points.push_back({centre.x + radius * std::cos(angle), centre.y + radius * std::sin(angle)});
   }
-  return disc;
+  return points;
 }
 
 Layer Grid(const Plane& plane) {
   Layer layer{"grid", {}};
-  const XyChart& chart = plane.chart;
   const TextStyle below{.size = kText, .colour = kSecondary, .anchor = Anchor::kMiddle};
   const TextStyle beside{.size = kText, .colour = kSecondary, .anchor = Anchor::kEnd};
-  for (int power = chart.x.least; power <= chart.x.most; ++power) {
-    const double x = std::floor(plane.At(std::pow(10, power), 1).x) + 0.5;
-    layer.shapes.emplace_back(LineShape{{{x, kTop}, {x, plane.Bottom()}}, kGrid, 1, false, 1});
+  for (const LogTick& tick : TicksOf(plane.chart.x)) {
+    const double x = std::floor(plane.XOf(tick.value)) + 0.5;
     layer.shapes.emplace_back(
-        TextShape{x, plane.Bottom() + 16, fmt::format("{:g}", std::pow(10, power)), below});
+        LineShape{{{x, plane.Top()}, {x, plane.Bottom()}}, kGrid, 1, false, 1});
+    layer.shapes.emplace_back(TextShape{x, plane.Bottom() + 16, tick.label, below});
   }
-  for (int power = chart.y.least; power <= chart.y.most; ++power) {
-    const double y = std::floor(plane.At(1, std::pow(10, power)).y) + 0.5;
+  for (const LogTick& tick : TicksOf(plane.chart.y)) {
+    const double y = std::floor(plane.YOf(tick.value)) + 0.5;
     layer.shapes.emplace_back(LineShape{{{kLeft, y}, {plane.Right(), y}}, kGrid, 1, false, 1});
-    layer.shapes.emplace_back(
-        TextShape{kLeft - 10, y, fmt::format("{:g}", std::pow(10, power)), beside});
+    layer.shapes.emplace_back(TextShape{kLeft - 10, y, tick.label, beside});
   }
   return layer;
 }
 
 Layer Titles(const Plane& plane) {
   const XyChart& chart = plane.chart;
-  TextStyle x{.size = kText, .colour = kSecondary, .anchor = Anchor::kEnd};
-  TextStyle y{.size = kText, .colour = kSecondary};
-  return {"axis",
-          {TextShape{plane.Right(), chart.height - 10, chart.x.title, x},
-           TextShape{kLeft - 40, 10, chart.y.title, y}}};
+  const TextStyle x{.size = kText, .colour = kSecondary, .anchor = Anchor::kEnd};
+  const TextStyle y{.size = kText, .colour = kSecondary};
+  constexpr double kFromLeft = kLeft - 40;
+  Layer layer{"axis",
+              {TextShape{plane.Right(), chart.height - 10, chart.x.title, x},
+               TextShape{kFromLeft, plane.Top() - 16, chart.y.title, y}}};
+  if (!chart.heading.empty())
+    layer.shapes.emplace_back(TextShape{
+        kFromLeft, 12, chart.heading, {.size = kHeadingText, .colour = kInk, .bold = true}});
+  return layer;
 }
 
-/// A box that a label takes; labels and marked discs do not overlap.
-struct Box {
-  double left, top, right, bottom;
-  bool Meets(const Box& o) const {
-    return left < o.right && o.left < right && top < o.bottom && o.top < bottom;
-  }
-};
+void AddLine(const Plane& plane, const XySeries& series, LabelRoom& room, Layer& layer) {
+  std::vector<Point> way;
+  for (const XyPoint& p : series.points) way.push_back(plane.At(p));
+  if (!series.line || way.size() < 2) return;
+  for (std::size_t i = 1; i < way.size() && !series.quiet; ++i) room.TakeLine(way[i - 1], way[i]);
+  layer.shapes.emplace_back(
+      LineShape{std::move(way), ColourOf(series).disc, series.quiet ? 1.0 : 1.75, false, 1});
+}
 
-/// Beside the point where there is room: right, left, above, below; else right.
-TextShape PlaceLabel(const Plane& plane, const XyPoint& point, std::vector<Box>& taken) {
-  const Point at = plane.At(point.x, point.y);
-  const double width = TextWidth(point.label, kText, point.marked);
-  const Point places[] = {{at.x + 10, at.y},
-                          {at.x - 10 - width, at.y},
-                          {at.x - width / 2, at.y - 16},
-                          {at.x - width / 2, at.y + 16},
-                          {at.x + 10, at.y - 14},
-                          {at.x + 10, at.y + 14}};
-  Point chosen = places[0];
-  for (const Point& place : places) {
-    const Box box{place.x, place.y - 8, place.x + width, place.y + 8};
-    const bool inside = box.left > kLeft && box.right < plane.chart.width && box.top > 0 &&
-                        box.bottom < plane.Bottom();
-    if (!inside || std::ranges::any_of(taken, [&box](const Box& b) { return b.Meets(box); }))
-      continue;
-    chosen = place;
-    break;
-  }
-  taken.push_back({chosen.x, chosen.y - 8, chosen.x + width, chosen.y + 8});
-  const TextStyle style{
-      .size = kText, .colour = point.marked ? kAccent : kInk, .bold = point.marked};
-  return {chosen.x, chosen.y, point.label, style};
+void AddDisc(const Plane& plane, const XySeries& series, const XyPoint& point, LabelRoom& room,
+             Layer& layer) {
+  const Point at = plane.At(point);
+  const double radius = series.quiet ? kQuietDisc : kDisc;
+  layer.shapes.emplace_back(
+      PolygonShape{Circle(at, radius), point.marked ? kAccent : ColourOf(series).disc});
+  if (!series.quiet || series.line) room.TakeDisc(at, point.marked ? kRing : radius + 1);
+  if (!point.marked) return;
+  std::vector<Point> ring = Circle(at, kRing);
+  ring.push_back(ring.front());
+  layer.shapes.emplace_back(LineShape{std::move(ring), kAccent, 1.5, false, 1});
+}
+
+/// Lines and discs: the quiet ones first, the marked ones last.
+Layer Discs(const Plane& plane, LabelRoom& room) {
+  Layer layer{"discs", {}};
+  for (const bool quiet : {true, false})
+    for (const XySeries& series : plane.chart.series)
+      if (series.quiet == quiet) AddLine(plane, series, room, layer);
+  for (const bool marked : {false, true})
+    for (const bool quiet : {true, false})
+      for (const XySeries& series : plane.chart.series)
+        for (const XyPoint& point : series.points)
+          if (series.quiet == quiet && point.marked == marked)
+            AddDisc(plane, series, point, room, layer);
+  return layer;
+}
+
+/// A series' name, beside the first of its points that has room, from the last on.
+void AddName(const Plane& plane, const XySeries& series, LabelRoom& room, Layer& layer) {
+  const TextStyle style{.size = kText, .colour = ColourOf(series).text, .bold = true};
+  constexpr int kFar = 4;
+  for (const int rings : {1, kFar})
+    for (auto point = series.points.rbegin(); point != series.points.rend(); ++point)
+      if (const auto at = room.Take(plane.At(*point), series.name, style, rings)) {
+        layer.shapes.emplace_back(TextShape{at->x, at->y, series.name, style});
+        return;
+      }
+}
+
+/// Marked points first, then names of series, then the other points.
+Layer Labels(const Plane& plane, LabelRoom& room) {
+  Layer layer{"marks labels", {}};  // of class marks: legible over lines
+  const auto add_points = [&](bool marked) {
+    for (const XySeries& series : plane.chart.series)
+      for (const XyPoint& p : series.points) {
+        if (p.label.empty() || p.marked != marked) continue;
+        const TextStyle style{.size = kText, .colour = marked ? kAccent : kInk, .bold = marked};
+        if (const auto at = room.Take(plane.At(p), p.label, style, marked ? 4 : 1))
+          layer.shapes.emplace_back(TextShape{at->x, at->y, p.label, style});
+      }
+  };
+  add_points(true);
+  for (const XySeries& series : plane.chart.series)
+    if (!series.name.empty()) AddName(plane, series, room, layer);
+  add_points(false);
+  return layer;
+}
+
+/// "4: 0.068, 0.0123; 16: ..." for each series.
+std::string InWords(const XyChart& chart) {
+  std::string words;
+  for (const XySeries& series : chart.series)
+    for (const XyPoint& p : series.points)
+      words += fmt::format("{}{}{}{}: {:.3g}, {:.3g}", words.empty() ? "" : "; ", series.name,
+                           series.name.empty() || p.label.empty() ? "" : " ", p.label, p.x, p.y);
+  return words;
 }
 
 }  // namespace
@@ -111,29 +170,11 @@ TextShape PlaceLabel(const Plane& plane, const XyPoint& point, std::vector<Box>&
 Scene XyView(const XyChart& chart) {
   Scene scene{.name = chart.name, .width = chart.width, .height = chart.height};
   scene.title = chart.title;
+  scene.description = InWords(chart);
   const Plane plane{chart};
-  Layer discs{"discs", {}};
-  Layer labels{"labels", {}};
-  std::vector<Box> taken;
-  for (const bool quiet : {true, false})
-    for (const XySeries& series : chart.series) {
-      if (series.quiet != quiet) continue;
-      for (const XyPoint& p : series.points) {
-        const Point at = plane.At(p.x, p.y);
-        const double radius = quiet ? 2.5 : 5;
-        discs.shapes.emplace_back(Disc(at, radius,
-                                       p.marked ? kAccent
-                                       : quiet  ? kQuietBar
-                                                : ColourOf(State::kUser)));
-        if (!quiet) taken.push_back({at.x - 6, at.y - 6, at.x + 6, at.y + 6});
-        scene.description += fmt::format("{}{}: {:.3g}, {:.3g}",
-                                         scene.description.empty() ? "" : "; ", p.label, p.x, p.y);
-      }
-    }
-  for (const XySeries& series : chart.series)
-    for (const XyPoint& p : series.points)
-      if (!p.label.empty()) labels.shapes.emplace_back(PlaceLabel(plane, p, taken));
-  scene.layers = {Grid(plane), Titles(plane), std::move(discs), std::move(labels)};
+  LabelRoom room({kLeft + 2, plane.Top() - 6, chart.width - 2, plane.Bottom() - 2});
+  Layer discs = Discs(plane, room);
+  scene.layers = {Grid(plane), Titles(plane), std::move(discs), Labels(plane, room)};
   return scene;
 }
 

@@ -7,6 +7,8 @@ namespace {
 constexpr ChartEntry kCharts[] = {
     {"sampling", SamplingChart, "rays per pixel and where they go, against 1024 rays per pixel"},
     {"depth", DepthChart, "how far reflections are followed, against all of them"},
+    {"precision", PrecisionChart,
+     "kinds of number and kernels, with the scene far from the origin"},
     {"quadrics", QuadricsChart, "spheres as they are, or as triangles"},
 };
 

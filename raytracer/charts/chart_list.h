@@ -21,6 +21,7 @@ std::span<const ChartEntry> Charts();
 
 ChartTable SamplingChart(Session& session);
 ChartTable DepthChart(Session& session);
+ChartTable PrecisionChart(Session& session);
 ChartTable QuadricsChart(Session& session);
 
 }  // namespace stipple::raytracer

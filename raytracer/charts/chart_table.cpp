@@ -24,8 +24,9 @@ void AddAxis(std::string& text, std::string_view name, const ChartAxis& axis) {
 }  // namespace
 
 std::string CsvOf(const ChartTable& table) {
-  std::string text = fmt::format("# title: {}\n# sentence: {}\n# kind: {}\n", table.title,
-                                 table.sentence, table.kind);
+  std::string text = fmt::format("# title: {}\n# sentence: {}\n# effort: {}\n# kind: {}\n",
+                                 table.title, table.sentence, table.effort, table.kind);
+  if (!table.quiet.empty()) text += fmt::format("# quiet: {}\n", table.quiet);
   AddAxis(text, "x", table.x);
   AddAxis(text, "y", table.y);
   AddAxis(text, "value", table.value);

@@ -35,6 +35,8 @@ struct ChartTable {
   std::string name{};
   std::string title{};
   std::string sentence{};        // the answer first: what to take, and what it costs and loses
+  std::string effort{};          // how it was measured, and on what
+  std::string_view quiet{};      // the series that is there for comparison only
   std::string_view kind = "xy";  // points on logarithmic axes, or "map": a value for each x and y
   ChartAxis x{"cpu_s", "CPU seconds"};
   ChartAxis y{"error", "error"};

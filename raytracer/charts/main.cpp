@@ -50,7 +50,8 @@ void MeasureCharts(const ChartOptions& options) {
   if (failed) throw InputError(options.folder, 0, "cannot be made: " + failed.message());
   Session session(options.quick);
   for (const ChartEntry* chart : charts) {
-    const ChartTable table = chart->measure(session);
+    ChartTable table = chart->measure(session);
+    table.effort = session.Effort();
     session.progress.End();
     WriteCsv(table, options.folder);
     fmt::print("{}: {}\n", chart->name, table.sentence);

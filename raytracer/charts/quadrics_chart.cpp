@@ -9,6 +9,7 @@
 
 #include "raytracer/charts/chart_list.h"
 #include "raytracer/charts/measure.h"
+#include "raytracer/charts/moved.h"
 #include "raytracer/charts/range_text.h"
 #include "raytracer/scene/load.h"
 
@@ -43,20 +44,14 @@ void AddTriangles(const Sphere<double>& sphere, int bands, std::uint32_t materia
     }
 }
 
-/// The same scene with every sphere replaced; the other shapes of this scene are polygons.
+/// The same scene with every sphere replaced.
 Scene Tessellated(const Scene& scene, int bands) {
   Scene result{scene.background, scene.view, scene.lights, scene.materials, {}};
-  const Shapes& from = scene.shapes;
-  for (const Object& object : from.objects) {
-    if (object.kind == ShapeKind::kSphere) {
-      AddTriangles(from.spheres[object.index], bands, object.material, result.shapes);
-    } else if (object.kind == ShapeKind::kPolygon) {
-      const Polygon<double>& polygon = from.polygons[object.index];
-      result.shapes.AddPolygon(
-          std::span(from.vertices).subspan(polygon.first_vertex, polygon.vertex_count), {},
-          object.material);
-    }
-  }
+  for (const Object& object : scene.shapes.objects)
+    if (object.kind == ShapeKind::kSphere)
+      AddTriangles(scene.shapes.spheres[object.index], bands, object.material, result.shapes);
+    else
+      AddMoved(scene.shapes, object, {}, result.shapes);
   return result;
 }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <fstream>
 #include <utility>
 
 #include "raytracer/scene/load.h"
@@ -38,11 +39,24 @@ void ProgressLine::End() {
   visible_ = false;
 }
 
+namespace {
+
+/// As Linux calls the processor.
+std::string ProcessorName() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with("model name"))
+      return line.substr(std::min(line.size(), line.find(':') + 2));
+  return "unknown processor";
+}
+
+}  // namespace
+
 template <class Real>
 std::unique_ptr<ReadyScene<Real>> MakeReady(Scene scene, std::string_view kernel) {
   auto ready = std::make_unique<ReadyScene<Real>>();
   ready->scene = std::move(scene);
-  ready->model = BuildModel<Real>(std::move(ready->scene.shapes));
+  ready->model = BuildModel<Real>(std::move(ready->scene.shapes), HierarchyFor(kernel));
   ready->kernel = MakeKernel(kernel, ready->model);
   return ready;
 }
@@ -50,6 +64,12 @@ std::unique_ptr<ReadyScene<Real>> MakeReady(Scene scene, std::string_view kernel
 template std::unique_ptr<ReadyScene<float>> MakeReady(Scene, std::string_view);
 template std::unique_ptr<ReadyScene<double>> MakeReady(Scene, std::string_view);
 template std::unique_ptr<ReadyScene<long double>> MakeReady(Scene, std::string_view);
+
+std::string Session::Effort() const {
+  return fmt::format("{}{} x {} pixels, CPU time: least of {}, one thread, {}",
+                     quick ? "quick run: small scenes, " : "", image().width, image().height,
+                     rounds(), ProcessorName());
+}
 
 Scene Session::Load(const ChartScene& scene) const {
   return LoadScene({.scene = scene.name, .size = quick ? scene.quick_size : -1});

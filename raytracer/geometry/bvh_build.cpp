@@ -30,15 +30,15 @@ Vec3 CenterOf(const Bounds& box) { return (box.low + box.high) * 0.5; }
 
 class Builder {
  public:
-  explicit Builder(const Shapes& shapes) : order_(shapes.objects.size()) {
+  explicit Builder(const Shapes& shapes) : shapes_(shapes), order_(shapes.objects.size()) {
     std::iota(order_.begin(), order_.end(), 0U);
-    bounds_.reserve(order_.size());
-    for (const Object& object : shapes.objects) bounds_.push_back(BoundsOf(shapes, object));
-    nodes_.reserve(order_.size());
   }
 
   void Build() {
     if (order_.empty()) return;
+    bounds_.reserve(order_.size());
+    for (const Object& object : shapes_.objects) bounds_.push_back(BoundsOf(shapes_, object));
+    nodes_.reserve(order_.size());
     nodes_.push_back({});
     BuildNode(0, {0, static_cast<std::uint32_t>(order_.size())}, 0);
   }
@@ -147,6 +147,7 @@ class Builder {
     return best;
   }
 
+  const Shapes& shapes_;
   std::vector<std::uint32_t> order_;
   std::vector<Bounds> bounds_;  // by object number
   std::vector<BvhNode> nodes_;
@@ -192,11 +193,13 @@ Model<Real> BuildModel(Shapes&& shapes, Hierarchy hierarchy) {
   model.vertices = AllConverted<Real>(shapes.vertices);
   model.outlines = AllConverted<Real>(shapes.outlines);
   model.normals = AllConverted<Real>(shapes.normals);
-  std::vector<BvhEntry> entries;
-  entries.reserve(order.size());
-  for (const std::uint32_t number : order)
-    entries.push_back({objects[number].kind, objects[number].index, number});
-  model.entries = std::move(entries);
+  if (hierarchy == Hierarchy::kOfModel) {
+    std::vector<BvhEntry> entries;
+    entries.reserve(order.size());
+    for (const std::uint32_t number : order)
+      entries.push_back({objects[number].kind, objects[number].index, number});
+    model.entries = std::move(entries);
+  }
   model.nodes = builder.TakeNodes();
   model.objects = std::move(shapes.objects);
   shapes = {};

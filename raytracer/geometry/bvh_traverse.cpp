@@ -7,6 +7,7 @@
 #include "raytracer/geometry/embree_kernel.h"
 #include "raytracer/geometry/intersect.h"
 #include "raytracer/geometry/kernel.h"
+#include "raytracer/geometry/patch.h"
 
 namespace stipple::raytracer {
 namespace {
@@ -23,7 +24,8 @@ struct Walk {
         ray(with),
         shear(all.triangles.empty() ? ShearRay<Real>() : ShearRay<Real>(with)) {}
 
-  TriangleHit<Real> Meet(const BvhEntry& entry) const {
+  /// `max_t`: patches need not be met farther out.
+  TriangleHit<Real> Meet(const BvhEntry& entry, Real max_t) const {
     switch (entry.kind) {
       case ShapeKind::kSphere:
         return {IntersectSphere(model.spheres[entry.index], ray), 0, 0};
@@ -36,8 +38,10 @@ struct Walk {
         const std::span outline(model.outlines.data() + polygon.first_vertex, polygon.vertex_count);
         return {IntersectPolygon(polygon, outline, ray), 0, 0};
       }
-      case ShapeKind::kPatch:
-        break;
+      case ShapeKind::kPatch: {
+        const PatchHit<Real> hit = IntersectPatch(model.patches[entry.index], ray, max_t);
+        return {hit.t, hit.u, hit.v};
+      }
     }
     return {kMiss<Real>, 0, 0};
   }
@@ -52,11 +56,17 @@ Ray<double> InDouble(const Ray<Real>& ray) {
   return {rounded(ray.origin), rounded(ray.direction)};
 }
 
-/// A distance for box tests, no smaller than `t`.
+/// Wider than the roundings of box tests and of intersections in `Real`.
+template <class Real>
+constexpr double kWiden = 1 +
+                          16 * std::max(std::numeric_limits<double>::epsilon(),
+                                        static_cast<double>(std::numeric_limits<Real>::epsilon()));
+
+/// A distance for box tests: no box that begins where an object at `t` lies is behind it. (Objects
+/// at the same distance are decided by their numbers, so all have to be looked at.)
 template <class Real>
 double Far(Real t) {
-  const auto rounded = static_cast<double>(t);
-  return static_cast<Real>(rounded) < t ? std::nextafter(rounded, kMiss<double>) : rounded;
+  return static_cast<double>(t) * kWiden<Real>;
 }
 
 struct Pending {
@@ -82,8 +92,8 @@ template <class Model>
 inline bool Descend(const Model& model, const SlabRay& slab, double max_t,
                     std::array<Pending, kMaxBvhDepth>& stack, int& depth, std::uint32_t& node) {
   const std::uint32_t left = model.nodes[node].first;
-  const double left_enter = EnterBounds(model.nodes[left].bounds, slab, Far(max_t));
-  const double right_enter = EnterBounds(model.nodes[left + 1].bounds, slab, Far(max_t));
+  const double left_enter = EnterBounds(model.nodes[left].bounds, slab, max_t);
+  const double right_enter = EnterBounds(model.nodes[left + 1].bounds, slab, max_t);
   const bool left_first = left_enter <= right_enter;
   const double near_enter = left_first ? left_enter : right_enter;
   const double far_enter = left_first ? right_enter : left_enter;
@@ -102,7 +112,7 @@ class ScalarKernel final : public Kernel<Real> {
   [[gnu::noinline]] Hit<Real> Intersect(const Ray<Real>& ray, TestCounts& tests) const override {
     Hit<Real> best;
     if (model_.nodes.empty()) return best;
-    const SlabRay slab(InDouble(ray));
+    const SlabRay slab(InDouble(ray), kWiden<Real>);
     const Walk<Real> walk(model_, ray);
     std::array<Pending, kMaxBvhDepth> stack;
     int depth = 0;
@@ -118,7 +128,7 @@ class ScalarKernel final : public Kernel<Real> {
       }
       const BvhEntry* const entries = model_.entries.data() + model_.nodes[node].first;
       for (std::uint32_t i = 0; i < model_.nodes[node].count; ++i) {
-        const TriangleHit<Real> met = walk.Meet(entries[i]);
+        const TriangleHit<Real> met = walk.Meet(entries[i], best.t);
         if (met.t < best.t ||
             (met.t == best.t && entries[i].object < best.object && met.t != kMiss<Real>))
           best = {met.t, entries[i].object, met.u, met.v};
@@ -134,7 +144,7 @@ class ScalarKernel final : public Kernel<Real> {
   [[gnu::noinline]] bool Occluded(const Ray<Real>& ray, Real max_t,
                                   TestCounts& tests) const override {
     if (model_.nodes.empty()) return false;
-    const SlabRay slab(InDouble(ray));
+    const SlabRay slab(InDouble(ray), kWiden<Real>);
     const Walk<Real> walk(model_, ray);
     std::array<Pending, kMaxBvhDepth> stack;
     int depth = 0;
@@ -151,7 +161,7 @@ class ScalarKernel final : public Kernel<Real> {
       }
       const BvhEntry* const entries = model_.entries.data() + model_.nodes[node].first;
       for (std::uint32_t i = 0; i < model_.nodes[node].count && !found; ++i) {
-        found = walk.Meet(entries[i]).t < max_t;
+        found = walk.Meet(entries[i], max_t).t < max_t;
         ++primitive_tests;
       }
       more = NextNode(stack, depth, Far(max_t), node);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Each kind of shape is one Embree geometry, in what Embree knows best: spheres as sphere points,
 // cones as linear curves without caps, triangles, and polygons of four convex corners as quads.
-// Other polygons are user geometry: Embree calls back for them, one ray and one primitive at a
-// time.
+// Other polygons and patches are user geometry: Embree calls back for them, one ray and one
+// primitive at a time.
 #include "raytracer/geometry/embree_kernel.h"
 
 #include <embree3/rtcore.h>
@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "raytracer/errors.h"
-#include "raytracer/geometry/intersect.h"
+#include "raytracer/geometry/patch.h"
 
 namespace stipple::raytracer {
 namespace {
@@ -36,7 +36,15 @@ template <class Handle>
 using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Release>;
 
 /// Numbers of the geometries in the scene.
-enum GeometryNumber : unsigned { kSpheres, kCones, kTriangles, kQuads, kPolygons, kGeometries };
+enum GeometryNumber : unsigned {
+  kSpheres,
+  kCones,
+  kTriangles,
+  kQuads,
+  kPolygons,
+  kPatches,
+  kGeometries
+};
 
 /// The ray as it was asked, for callbacks: they compute in the model's kind of number.
 template <class Real>
@@ -100,7 +108,8 @@ class EmbreeKernel final : public Kernel<Real> {
     AddCones();
     AddTriangles();
     AddQuads();
-    AddPolygons();
+    AddOwn<kPolygons>();
+    AddOwn<kPatches>();
     rtcCommitScene(scene_.get());
     if (!error_.empty()) Refuse(error_);
     rtcSetDeviceErrorFunction(device_.get(), nullptr, nullptr);
@@ -152,7 +161,7 @@ class EmbreeKernel final : public Kernel<Real> {
       case ShapeKind::kPatch:
         break;
     }
-    Refuse("this kernel does not know Bezier patches");
+    return kPatches;
   }
 
   bool IsConvexQuad(const Polygon<Real>& polygon) const {
@@ -279,60 +288,74 @@ class EmbreeKernel final : public Kernel<Real> {
     Attach(geometry, kQuads);
   }
 
-  void AddPolygons() {
-    const std::size_t count = objects_[kPolygons].size();
+  /// Shapes that Embree asks us about.
+  template <GeometryNumber kNumber>
+  void AddOwn() {
+    const std::size_t count = objects_[kNumber].size();
     if (count == 0) return;
     const auto geometry = NewGeometry(RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry.get(), static_cast<unsigned>(count));
     rtcSetGeometryUserData(geometry.get(), this);
-    rtcSetGeometryBoundsFunction(geometry.get(), PolygonBounds, nullptr);
-    rtcSetGeometryIntersectFunction(geometry.get(), IntersectPolygonCallback);
-    rtcSetGeometryOccludedFunction(geometry.get(), OccludedPolygonCallback);
-    Attach(geometry, kPolygons);
+    rtcSetGeometryBoundsFunction(geometry.get(), BoundsCallback<kNumber>, nullptr);
+    rtcSetGeometryIntersectFunction(geometry.get(), IntersectCallback<kNumber>);
+    rtcSetGeometryOccludedFunction(geometry.get(), OccludedCallback<kNumber>);
+    Attach(geometry, kNumber);
   }
 
-  const Polygon<Real>& PolygonOf(std::uint32_t primitive) const {
-    return ShapeOf(model_.polygons, kPolygons, primitive);
+  /// The points whose hull holds the shape.
+  template <GeometryNumber kNumber>
+  std::span<const Vec<Real>> HullOf(std::uint32_t primitive) const {
+    if constexpr (kNumber == kPatches) return ShapeOf(model_.patches, kPatches, primitive).control;
+    const Polygon<Real>& polygon = ShapeOf(model_.polygons, kPolygons, primitive);
+    return {model_.vertices.data() + polygon.first_vertex, polygon.vertex_count};
   }
 
-  static void PolygonBounds(const RTCBoundsFunctionArguments* arguments) {
+  template <GeometryNumber kNumber>
+  PatchHit<Real> Meet(std::uint32_t primitive, const Ray<Real>& ray, float max_t) const {
+    if constexpr (kNumber == kPatches)
+      return IntersectPatch(ShapeOf(model_.patches, kPatches, primitive), ray, Real{max_t});
+    const Polygon<Real>& polygon = ShapeOf(model_.polygons, kPolygons, primitive);
+    const std::span outline(model_.outlines.data() + polygon.first_vertex, polygon.vertex_count);
+    return {IntersectPolygon(polygon, outline, ray), 0, 0};
+  }
+
+  template <GeometryNumber kNumber>
+  static void BoundsCallback(const RTCBoundsFunctionArguments* arguments) {
     const auto& kernel = *static_cast<const EmbreeKernel*>(arguments->geometryUserPtr);
-    const Polygon<Real>& polygon = kernel.PolygonOf(arguments->primID);
     Bounds box;
-    for (std::uint32_t i = 0; i < polygon.vertex_count; ++i) {
-      const Vec<Real> v = kernel.model_.vertices[polygon.first_vertex + i];
+    for (const Vec<Real>& p : kernel.template HullOf<kNumber>(arguments->primID))
       box.Include(
-          Vec3{static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)});
-    }
+          Vec3{static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
     SetBounds(box, *arguments->bounds_o);
   }
 
-  /// Both kinds of callback: where the asked ray meets a polygon.
-  template <class Arguments>
-  static float PolygonDistance(const Arguments* arguments) {
+  /// Both kinds of question: where the asked ray meets the shape.
+  template <GeometryNumber kNumber, class Arguments>
+  static PatchHit<Real> Meet(const Arguments* arguments, float max_t) {
     const auto& kernel = *static_cast<const EmbreeKernel*>(arguments->geometryUserPtr);
-    const Polygon<Real>& polygon = kernel.PolygonOf(arguments->primID);
-    const std::span outline(kernel.model_.outlines.data() + polygon.first_vertex,
-                            polygon.vertex_count);
     const Ray<Real>& ray = *reinterpret_cast<const Context<Real>*>(arguments->context)->ray;
-    return static_cast<float>(IntersectPolygon(polygon, outline, ray));
+    return kernel.template Meet<kNumber>(arguments->primID, ray, max_t);
   }
 
-  static void IntersectPolygonCallback(const RTCIntersectFunctionNArguments* arguments) {
+  template <GeometryNumber kNumber>
+  static void IntersectCallback(const RTCIntersectFunctionNArguments* arguments) {
     if (arguments->valid[0] == 0) return;
     auto& found = *reinterpret_cast<RTCRayHit*>(arguments->rayhit);  // N is 1
-    const float t = PolygonDistance(arguments);
-    if (!(t < found.ray.tfar)) return;
-    found.ray.tfar = t;
+    const PatchHit<Real> hit = Meet<kNumber>(arguments, found.ray.tfar);
+    if (!(static_cast<float>(hit.t) < found.ray.tfar)) return;
+    found.ray.tfar = static_cast<float>(hit.t);
     found.hit.geomID = arguments->geomID;
     found.hit.primID = arguments->primID;
-    found.hit.u = found.hit.v = 0;
+    found.hit.u = static_cast<float>(hit.u);
+    found.hit.v = static_cast<float>(hit.v);
   }
 
-  static void OccludedPolygonCallback(const RTCOccludedFunctionNArguments* arguments) {
+  template <GeometryNumber kNumber>
+  static void OccludedCallback(const RTCOccludedFunctionNArguments* arguments) {
     if (arguments->valid[0] == 0) return;
     auto& ray = *reinterpret_cast<RTCRay*>(arguments->ray);  // N is 1
-    if (PolygonDistance(arguments) < ray.tfar) ray.tfar = -std::numeric_limits<float>::infinity();
+    if (static_cast<float>(Meet<kNumber>(arguments, ray.tfar).t) < ray.tfar)
+      ray.tfar = -std::numeric_limits<float>::infinity();
   }
 
   const Model<Real>& model_;

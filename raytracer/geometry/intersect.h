@@ -66,7 +66,9 @@ inline Real IntersectCone(const Cone<Real>& cone, const Ray<Real>& ray) {
   return kMiss<Real>;
 }
 
-/// Is the point inside the outline (even-odd rule: concave outlines need no special care)?
+/// Is the point inside the outline (even-odd rule: concave outlines need no special care)? A point
+/// on an edge that two outlines share is inside one of them: an edge is looked at from its lower
+/// end, whichever way round its outline goes.
 template <class Real>
 inline bool InsideOutline(std::span<const OutlinePoint<Real>> outline, OutlinePoint<Real> p) {
   bool inside = false;
@@ -74,8 +76,8 @@ inline bool InsideOutline(std::span<const OutlinePoint<Real>> outline, OutlinePo
   for (const OutlinePoint<Real>& b : outline) {
     if ((a.v > p.v) != (b.v > p.v)) {
       // Crosses the horizontal line through p: to the right of p? Written without division.
-      const Real side = (b.u - a.u) * (p.v - a.v) - (p.u - a.u) * (b.v - a.v);
-      if ((side > 0) == (b.v > a.v)) inside = !inside;
+      const OutlinePoint<Real>&low = a.v < b.v ? a : b, &high = a.v < b.v ? b : a;
+      if ((high.u - low.u) * (p.v - low.v) > (p.u - low.u) * (high.v - low.v)) inside = !inside;
     }
     a = b;
   }

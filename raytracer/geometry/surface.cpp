@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "raytracer/geometry/surface.h"
 
+#include "raytracer/geometry/patch.h"
+
 namespace stipple::raytracer {
 namespace {
 
@@ -79,8 +81,12 @@ Normals<Real> NormalsAt(const Model<Real>& model, const Hit<Real>& hit, Vec<Real
     }
     case ShapeKind::kTriangle:
       return TriangleNormals(model, model.triangles[object.index], hit);
-    case ShapeKind::kPatch:
-      break;
+    case ShapeKind::kPatch: {
+      const Vec<Real> normal =
+          PointOn(model.patches[object.index], Parameter<Real>(hit.u), Parameter<Real>(hit.v))
+              .normal;
+      return {normal, normal};
+    }
     case ShapeKind::kPolygon: {
       const Polygon<Real>& polygon = model.polygons[object.index];
       if (polygon.first_normal == kNoNormals) return {polygon.normal, polygon.normal};

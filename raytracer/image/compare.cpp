@@ -31,13 +31,15 @@ std::uint8_t DimGrey(const float* rgb) {
 
 }  // namespace
 
-LinearImage ReadPicture(const std::string& path) {
-  if (path.ends_with(".exr")) return ReadExr(path);
-  const Image bytes = ReadPng(path);
+LinearImage Linear(const Image& bytes) {
   LinearImage image{bytes.size, {}};
   image.rgb.reserve(bytes.rgb.size());
   for (const std::uint8_t byte : bytes.rgb) image.rgb.push_back(static_cast<float>(byte) / 255);
   return image;
+}
+
+LinearImage ReadPicture(const std::string& path) {
+  return path.ends_with(".exr") ? ReadExr(path) : Linear(ReadPng(path));
 }
 
 ImageDifference Compare(const LinearImage& a, const LinearImage& b) {

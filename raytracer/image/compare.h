@@ -10,6 +10,9 @@
 
 namespace stipple::raytracer {
 
+/// Bytes as numbers.
+LinearImage Linear(const Image& bytes);
+
 /// A PNG or, by its ending, an EXR; white is 1 in both. Errors: InputError, UsageError.
 LinearImage ReadPicture(const std::string& path);
 

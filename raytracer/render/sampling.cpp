@@ -28,19 +28,23 @@ struct Offset {
   double x, y;  // from the point, in columns and rows
 };
 
-/// The lattice (i, 19 i) mod 1, in an order whose first 2^k points are a lattice too: those of the
-/// numbers i / kMostRays with their bits reversed. Of all generators 19 leaves the widest gap
-/// between points, taken over 8 to 256 of them. Source: F. Hickernell et al., "Extensible Lattice
-/// Sequences for Quasi-Monte Carlo Quadrature", SIAM J. Scientific Computing 22(3), 2000.
+/// The lattice (i, 19 i) mod 1, in an order whose first 2^k points are a lattice too: that of i's
+/// bits reversed. Of all generators 19 leaves the widest gaps between points, over 8 to 256 of
+/// them. The first 32 are centred in the pixel; a lattice whose middle is off it moves the picture,
+/// and every other point mirrored about the middle, so that none is, makes 32 and 64 worse by 2 to
+/// 4 dB. Source: F. Hickernell et al., "Extensible Lattice Sequences for Quasi-Monte Carlo
+/// Quadrature", SIAM J. Scientific Computing 22(3), 2000.
 std::vector<Offset> ExtensibleLattice() {
-  constexpr unsigned kGenerator = 19;
+  constexpr unsigned kGenerator = 19, kShift = kMostRays / 64;
+  const auto place = [](unsigned number) {
+    return static_cast<double>((number + kShift) % kMostRays) / kMostRays - 0.5;
+  };
   std::vector<Offset> offsets;
   for (unsigned i = 0; i < kMostRays; ++i) {
     unsigned reversed = 0;
     for (unsigned bit = 1; bit < kMostRays; bit *= 2)
       reversed = 2 * reversed + ((i & bit) != 0 ? 1 : 0);
-    offsets.push_back({(reversed + 0.5) / kMostRays - 0.5,
-                       (reversed * kGenerator % kMostRays + 0.5) / kMostRays - 0.5});
+    offsets.push_back({place(reversed), place(reversed * kGenerator)});
   }
   return offsets;
 }

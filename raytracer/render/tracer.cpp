@@ -2,6 +2,7 @@
 #include "raytracer/render/tracer.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -38,9 +39,13 @@ Vec<Real> Reflected(Vec<Real> direction, Vec<Real> normal) {
 }  // namespace
 
 std::int64_t ToFixed(double value) {
-  const double bounded = std::clamp(value, -kBrightest, kBrightest);
-  return static_cast<std::int64_t>(bounded * static_cast<double>(kFixedOne) +
-                                   std::copysign(0.5, bounded));
+  // Adding a number whose last binary digit is 1 rounds to a whole number, which then stands in the
+  // sum's last digits: no conversion, no branch on the sign.
+  constexpr double kWhole = 0x1.8p52;
+  static_assert(kBrightest * static_cast<double>(kFixedOne) < 0x1p51);
+  const double bounded = std::max(-kBrightest, std::min(kBrightest, value));
+  return std::bit_cast<std::int64_t>(bounded * static_cast<double>(kFixedOne) + kWhole) -
+         std::bit_cast<std::int64_t>(kWhole);
 }
 
 void Add(const RayResult& more, RayResult& sum) {
@@ -106,6 +111,7 @@ template <class Real, Rules kRules>
     result.object = hit.object;
     result.in_shadow = in_shadow ? 1 : 0;
   }
+  if (!surface.material->sends_on) return;
   if (leg.depth < max_depth_)
     Follow(leg, surface, result);
   else
@@ -140,7 +146,7 @@ typename Tracer<Real, kRules>::Surface Tracer<Real, kRules>::SurfaceAt(const Ray
   surface.leaving = Dot(ray.direction, normals.face) > 0;
   surface.face = surface.leaving ? -normals.face : normals.face;
   surface.normal = surface.leaving ? -normals.shading : normals.shading;
-  surface.mirrored = Reflected(ray.direction, surface.normal);
+  if (surface.material->sends_on) surface.mirrored = Reflected(ray.direction, surface.normal);
   surface.offset = SurfaceOffset(surface.point, hit.t, rounding_);
   return surface;
 }
@@ -165,7 +171,7 @@ template <class Real, Rules kRules>
       continue;
     }
     sum = sum + material.diffuse * light.color * (facing * inverse);
-    if (!(material.highlight > 0)) continue;
+    if (!(material.specular > 0)) continue;
     const Real mirrored = Dot(surface.mirrored, direction);
     if (mirrored > 0)
       sum = sum + light.color *

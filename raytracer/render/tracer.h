@@ -107,7 +107,7 @@ class Tracer {
     Vec<Real> point;
     Vec<Real> face;      // unit normal of the geometry, towards the ray's origin
     Vec<Real> normal;    // unit normal for shading, on the same side
-    Vec<Real> mirrored;  // direction of the ray reflected about `normal`
+    Vec<Real> mirrored;  // direction of the reflected ray, if the material sends any on
     Real offset;         // distance that new rays keep from the surface
     bool leaving;        // the ray came from inside
     const Material* material;

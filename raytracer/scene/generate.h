@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The four scenes of Eric Haines' Standard Procedural Databases that the exemplar uses, at any
-// size: the same objects in the same order as SPD's own generators write them.
+// size: the same objects in the same order as SPD's own generators write them. And the teapot as
+// the patches that SPD's triangles are made from.
 #ifndef STIPPLE_RAYTRACER_SCENE_GENERATE_H
 #define STIPPLE_RAYTRACER_SCENE_GENERATE_H
 
@@ -15,12 +16,15 @@ Scene Balls(int size);
 Scene Rings(int size);
 Scene Teapot(int size);
 Scene Tree(int size);
+/// The 32 patches of the pot, on a board of size x size squares.
+Scene TeapotPatches(int size);
 
 /// Objects in each scene, as a real number so that absurd sizes do not overflow.
 double BallsObjects(double size);
 double RingsObjects(double size);
 double TeapotObjects(double size);
 double TreeObjects(double size);
+double TeapotPatchesObjects(double size);
 
 /// A further view of a generated scene, beside its own.
 struct NamedView {
@@ -49,6 +53,7 @@ inline constexpr Generator kGenerators[] = {
     {"rings", Rings, RingsObjects, 1, 7, {"above", RingsAboveView}},
     {"teapot", Teapot, TeapotObjects, 1, 12, {"side", TeapotSideView}},
     {"tree", Tree, TreeObjects, 0, 11, {}},
+    {"teapot-patches", TeapotPatches, TeapotPatchesObjects, 1, 12, {"side", TeapotSideView}},
 };
 
 /// More objects than this are refused: a mistyped size should not fill the machine's memory.

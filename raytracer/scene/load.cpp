@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "raytracer/errors.h"
+#include "raytracer/scene/file_bytes.h"
 #include "raytracer/scene/generate.h"
 #include "raytracer/scene/nff.h"
 
@@ -37,8 +38,28 @@ bool IsNamedView(const std::string& camera) {
       kGenerators, [&](const Generator& generator) { return generator.other_view.name == camera; });
 }
 
-View ViewOf(const Generator* generator, const SceneChoice& choice) {
+}  // namespace
+
+std::string TextOf(const SceneChoice& choice) {
+  if (FindGenerator(choice.scene) != nullptr) return {};
+  if (choice.size >= 0)
+    throw UsageError(
+        fmt::format("--scene-size {}: the file {} has the size it has", choice.size, choice.scene));
+  return ReadFile(choice.scene);
+}
+
+Scene SceneFrom(const SceneChoice& choice, std::string_view text) {
+  const Generator* const generator = FindGenerator(choice.scene);
+  Scene scene = generator != nullptr ? generator->scene(SizeOf(*generator, choice.size))
+                                     : ParseNff(text, choice.scene);
+  if (choice.object_limit > 0) LimitObjects(scene, choice.object_limit);
+  return scene;
+}
+
+View ViewOf(const SceneChoice& choice, const View& own) {
+  if (choice.camera == "default") return own;
   if (!IsNamedView(choice.camera)) return ReadNffView(choice.camera);
+  const Generator* const generator = FindGenerator(choice.scene);
   if (generator == nullptr || generator->other_view.name != choice.camera)
     throw UsageError(
         fmt::format("--camera {}: scene {} has no such view (rings have above, "
@@ -47,17 +68,9 @@ View ViewOf(const Generator* generator, const SceneChoice& choice) {
   return generator->other_view.view(SizeOf(*generator, choice.size));
 }
 
-}  // namespace
-
 Scene LoadScene(const SceneChoice& choice) {
-  const Generator* const generator = FindGenerator(choice.scene);
-  if (generator == nullptr && choice.size >= 0)
-    throw UsageError(
-        fmt::format("--scene-size {}: the file {} has the size it has", choice.size, choice.scene));
-  Scene scene = generator != nullptr ? generator->scene(SizeOf(*generator, choice.size))
-                                     : ReadNff(choice.scene);
-  if (choice.camera != "default") scene.view = ViewOf(generator, choice);
-  if (choice.object_limit > 0) LimitObjects(scene, choice.object_limit);
+  Scene scene = SceneFrom(choice, TextOf(choice));
+  scene.view = ViewOf(choice, scene.view);
   return scene;
 }
 

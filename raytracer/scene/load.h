@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "raytracer/scene/scene.h"
 
@@ -15,10 +16,20 @@ struct SceneChoice {
   std::int64_t size = -1;          // of a generated scene; below 0: its usual size
   std::uint64_t object_limit = 0;  // 0: all
   std::string camera = "default";  // "default", a further view of the scene, or a file
+  std::uint64_t memory_limit = 0;  // bytes that it may take on a node; 0: what the node has
 };
 
 /// Errors: InputError for files, UsageError for a size or view that the scene does not have.
 Scene LoadScene(const SceneChoice& choice);
+
+// Its steps, for who can spare some.
+
+/// The text of the scene's file; empty if the scene is generated.
+std::string TextOf(const SceneChoice& choice);
+/// With the scene's own view.
+Scene SceneFrom(const SceneChoice& choice, std::string_view text);
+/// The chosen one; `own`: the scene's.
+View ViewOf(const SceneChoice& choice, const View& own);
 
 }  // namespace stipple::raytracer
 

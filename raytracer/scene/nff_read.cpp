@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <sstream>
-
 #include "raytracer/errors.h"
+#include "raytracer/scene/file_bytes.h"
 #include "raytracer/scene/nff.h"
 #include "raytracer/scene/nff_tokens.h"
 
@@ -201,23 +197,13 @@ class NffReader {
   std::vector<Vec3> vertices_, normals_;
 };
 
-std::string FileText(const std::string& path) {
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (file && file.peek() != std::ifstream::traits_type::eof()) text << file.rdbuf();
-  if (!file && errno != 0)
-    throw InputError(path, 0, fmt::format("cannot be read: {}", std::strerror(errno)));
-  return std::move(text).str();
-}
-
 }  // namespace
 
 Scene ParseNff(std::string_view text, std::string_view name) {
   return NffReader(text, name).Read();
 }
 
-Scene ReadNff(const std::string& path) { return ParseNff(FileText(path), path); }
+Scene ReadNff(const std::string& path) { return ParseNff(ReadFile(path), path); }
 
 View ReadNffView(const std::string& path) { return ReadNff(path).view; }
 

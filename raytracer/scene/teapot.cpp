@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // SPD's teapot: M. Newell's pot of 1975, lid and bottom included, on a checkerboard. The pot is 32
-// bicubic Bezier patches, each cut into n x n cells of two triangles with normals; cells at the
-// middle of the lid and of the bottom are one triangle.
+// bicubic Bezier patches; SPD cuts each into n x n cells of two triangles with normals, where cells
+// at the middle of the lid and of the bottom are one triangle. The scene teapot-patches keeps them.
 //
 // The pot is stored by what it is. Rim, body, knob, lid and bottom are turned: a patch is a profile
 // of four rings, each ring a quarter circle in Bezier form, and four quarters make a strip. Handle
@@ -59,7 +59,7 @@ constexpr TubeStrip kSpoutTip{{{2.7, 2.4, 3.3, 2.4, 0.25},
                                {2.8, 2.4, 3.2, 2.4, 0.15}}};
 
 /// Control points, four rows of four.
-using Patch = std::array<std::array<Vec3, 4>, 4>;
+using ControlNet = std::array<std::array<Vec3, 4>, 4>;
 
 /// Powers of a parameter, highest first, and their derivatives.
 struct Powers {
@@ -78,7 +78,7 @@ struct SurfacePoint {
 /// errors send them the same way.
 class PatchSurface {
  public:
-  explicit PatchSurface(const Patch& patch)
+  explicit PatchSurface(const ControlNet& patch)
       : coefficients_(TimesBezier(BezierTimes(patch))),
         pointed_(patch[0][0] == patch[0][3]),
         point_normal_{0, 0, patch[0][0].z > 1 ? 1.0 : -1.0} {}
@@ -98,15 +98,15 @@ class PatchSurface {
   static constexpr double kBezier[4][4] = {
       {-1, 3, -3, 1}, {3, -6, 3, 0}, {-3, 3, 0, 0}, {1, 0, 0, 0}};
 
-  static Patch BezierTimes(const Patch& b) {
-    Patch product;
+  static ControlNet BezierTimes(const ControlNet& b) {
+    ControlNet product;
     for (std::size_t i = 0; i < 4; ++i)
       for (std::size_t j = 0; j < 4; ++j)
         for (std::size_t k = 0; k < 4; ++k) product[i][j] = product[i][j] + b[k][j] * kBezier[i][k];
     return product;
   }
-  static Patch TimesBezier(const Patch& a) {
-    Patch product;
+  static ControlNet TimesBezier(const ControlNet& a) {
+    ControlNet product;
     for (std::size_t i = 0; i < 4; ++i)
       for (std::size_t j = 0; j < 4; ++j)
         for (std::size_t k = 0; k < 4; ++k) product[i][j] = product[i][j] + a[i][k] * kBezier[k][j];
@@ -123,74 +123,79 @@ class PatchSurface {
     return sum;
   }
 
-  Patch coefficients_;
+  ControlNet coefficients_;
   bool pointed_;
   Vec3 point_normal_;
 };
 
-class PotBuilder {
- public:
-  PotBuilder(Shapes& shapes, int cells, std::uint32_t material)
-      : shapes_(shapes), cells_(cells), material_(material) {}
-
-  void Add(const TurnedStrip& strip) {
-    // The quarter from one axis to the next, then the same turned about z three times.
-    for (int quarter = 0; quarter < 4; ++quarter) {
-      Patch patch;
-      for (std::size_t r = 0; r < 4; ++r) {
-        const auto& [radius, bend, z] = strip.rings[r];
-        const double flat[4][2] = {{radius, 0}, {radius, bend}, {bend, radius}, {0, radius}};
-        for (std::size_t c = 0; c < 4; ++c) {
-          double x = flat[c][0], y = flat[c][1];
-          for (int turn = 0; turn < quarter; ++turn) std::swap(x, y), x = -x;
-          patch[r][c] = {x, strip.turn * y, z};
-        }
-      }
-      Add(patch);
-    }
-  }
-
-  void Add(const TubeStrip& strip) {
-    Patch half, mirrored;
+/// The four patches of a turned strip.
+template <class Use>
+void ForEachPatch(const TurnedStrip& strip, Use use) {
+  // The quarter from one axis to the next, then the same turned about z three times.
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    ControlNet patch;
     for (std::size_t r = 0; r < 4; ++r) {
-      const CrossSection& s = strip[r];
-      half[r] = {Vec3{s.first_x, 0, s.first_z}, Vec3{s.first_x, -s.half_width, s.first_z},
-                 Vec3{s.second_x, -s.half_width, s.second_z}, Vec3{s.second_x, 0, s.second_z}};
+      const auto& [radius, bend, z] = strip.rings[r];
+      const double flat[4][2] = {{radius, 0}, {radius, bend}, {bend, radius}, {0, radius}};
       for (std::size_t c = 0; c < 4; ++c) {
-        const Vec3 p = half[r][3 - c];
-        mirrored[r][c] = {p.x, -p.y, p.z};
+        double x = flat[c][0], y = flat[c][1];
+        for (int turn = 0; turn < quarter; ++turn) std::swap(x, y), x = -x;
+        patch[r][c] = {x, strip.turn * y, z};
       }
     }
-    Add(half);
-    Add(mirrored);
+    use(patch);
   }
+}
 
- private:
-  void Add(const Patch& patch) {
-    const PatchSurface surface(patch);
-    const auto at = [&](int row, int column) {
-      return surface.At(static_cast<double>(row) / cells_, static_cast<double>(column) / cells_);
-    };
-    for (int row = 0; row < cells_; ++row) {
-      for (int column = 0; column < cells_; ++column) {
-        const SurfacePoint near_left = at(row, column), near_right = at(row, column + 1);
-        const SurfacePoint far_left = at(row + 1, column), far_right = at(row + 1, column + 1);
-        if (row > 0 || !surface.pointed()) AddTriangle(near_left, near_right, far_right);
-        AddTriangle(far_right, far_left, near_left);
-      }
+/// The two patches of a tube.
+template <class Use>
+void ForEachPatch(const TubeStrip& strip, Use use) {
+  ControlNet half, mirrored;
+  for (std::size_t r = 0; r < 4; ++r) {
+    const CrossSection& s = strip[r];
+    half[r] = {Vec3{s.first_x, 0, s.first_z}, Vec3{s.first_x, -s.half_width, s.first_z},
+               Vec3{s.second_x, -s.half_width, s.second_z}, Vec3{s.second_x, 0, s.second_z}};
+    for (std::size_t c = 0; c < 4; ++c) {
+      const Vec3 p = half[r][3 - c];
+      mirrored[r][c] = {p.x, -p.y, p.z};
     }
   }
+  use(half);
+  use(mirrored);
+}
 
-  void AddTriangle(const SurfacePoint& a, const SurfacePoint& b, const SurfacePoint& c) {
-    const Vec3 corners[] = {a.position, b.position, c.position};
-    const Vec3 normals[] = {a.normal, b.normal, c.normal};
-    shapes_.AddPolygon(corners, normals, material_);
+/// The pot's 32 patches in SPD's order.
+template <class Use>
+void ForEachPotPatch(Use use) {
+  for (const TurnedStrip* strip : {&kRim, &kShoulder, &kBelly}) ForEachPatch(*strip, use);
+  for (const TubeStrip* strip : {&kHandleTop, &kHandleEnd, &kSpoutRoot, &kSpoutTip})
+    ForEachPatch(*strip, use);
+  for (const TurnedStrip* strip : {&kKnob, &kLid, &kBottom}) ForEachPatch(*strip, use);
+}
+
+void AddTriangle(Shapes& shapes, const SurfacePoint& a, const SurfacePoint& b,
+                 const SurfacePoint& c, std::uint32_t material) {
+  const Vec3 corners[] = {a.position, b.position, c.position};
+  const Vec3 normals[] = {a.normal, b.normal, c.normal};
+  shapes.AddPolygon(corners, normals, material);
+}
+
+/// A patch as SPD cuts it.
+void AddCells(Shapes& shapes, const ControlNet& patch, int cells, std::uint32_t material) {
+  const PatchSurface surface(patch);
+  const auto at = [&](int row, int column) {
+    return surface.At(static_cast<double>(row) / cells, static_cast<double>(column) / cells);
+  };
+  for (int row = 0; row < cells; ++row) {
+    for (int column = 0; column < cells; ++column) {
+      const SurfacePoint near_left = at(row, column), near_right = at(row, column + 1);
+      const SurfacePoint far_left = at(row + 1, column), far_right = at(row + 1, column + 1);
+      if (row > 0 || !surface.pointed())
+        AddTriangle(shapes, near_left, near_right, far_right, material);
+      AddTriangle(shapes, far_right, far_left, near_left, material);
+    }
   }
-
-  Shapes& shapes_;
-  int cells_;
-  std::uint32_t material_;
-};
+}
 
 /// The squares of one colour of an n x n board from -4 to 4.
 void AddBoard(Shapes& shapes, int squares, int parity, std::uint32_t material) {
@@ -207,11 +212,8 @@ void AddBoard(Shapes& shapes, int squares, int parity, std::uint32_t material) {
   }
 }
 
-}  // namespace
-
-double TeapotObjects(double size) { return 65 * size * size - 8 * size; }
-
-Scene Teapot(int size) {
+/// All but the pot, whose material is the last one.
+Scene TeapotTable(int squares) {
   Scene scene;
   scene.background = kSpdBackground;
   scene.view = {{4.86, 7.2, 5.4}, {0, 0, 0}, {0, 0, 1}, 45, 1, {512, 512}};
@@ -219,13 +221,33 @@ Scene Teapot(int size) {
   scene.materials = {{{1, 1, 1}, 0.5, 0.5, 4.81884, 0, 0},
                      {{0.5, 0.5, 0.5}, 0.5, 0.5, 4.81884, 0, 0},
                      {{1, 0.5, 0.1}, 0.75, 0.25, 3.0827, 0, 0}};
-  AddBoard(scene.shapes, size, 1, 0);
-  AddBoard(scene.shapes, size, 0, 1);
-  PotBuilder pot(scene.shapes, size, 2);
-  for (const TurnedStrip* strip : {&kRim, &kShoulder, &kBelly}) pot.Add(*strip);
-  for (const TubeStrip* strip : {&kHandleTop, &kHandleEnd, &kSpoutRoot, &kSpoutTip})
-    pot.Add(*strip);
-  for (const TurnedStrip* strip : {&kKnob, &kLid, &kBottom}) pot.Add(*strip);
+  AddBoard(scene.shapes, squares, 1, 0);
+  AddBoard(scene.shapes, squares, 0, 1);
+  return scene;
+}
+
+constexpr std::uint32_t kPotMaterial = 2;
+
+}  // namespace
+
+double TeapotObjects(double size) { return 65 * size * size - 8 * size; }
+
+Scene Teapot(int size) {
+  Scene scene = TeapotTable(size);
+  ForEachPotPatch(
+      [&](const ControlNet& patch) { AddCells(scene.shapes, patch, size, kPotMaterial); });
+  return scene;
+}
+
+double TeapotPatchesObjects(double size) { return size * size + 32; }
+
+Scene TeapotPatches(int size) {
+  Scene scene = TeapotTable(size);
+  ForEachPotPatch([&](const ControlNet& patch) {
+    std::array<Vec3, 16> control;
+    for (std::size_t k = 0; k < 16; ++k) control[k] = patch[k / 4][k % 4];
+    scene.shapes.AddPatch(control, kPotMaterial);
+  });
   return scene;
 }
 

@@ -30,5 +30,9 @@ refuse 'none/x.png: cannot be written' "$mpiexec" --oversubscribe -n 2 "$raytrac
 refuse '--fast: unknown option; known are --scene' "$raytracer" --fast
 refuse '--tile circles: unknown; known are rows, columns, blocks' "$raytracer" --tile circles
 refuse 'rings have above' "$raytracer" --scene balls --camera above
+refuse 'coordinates and distances reach' "$raytracer" --precision float
+refuse 'the scene does not fit: 7382 objects' "$raytracer" --memory-limit 100K
+refuse '--memory-limit 1X: should be BYTES' "$raytracer" --memory-limit 1X
 refuse 'none.png: cannot be read' "$raytracer" --compare none.png none.png
+refuse 'Embree does not count its tests' "$raytracer" --kernel embree --cost-map x.png
 echo "all refused"

@@ -12,6 +12,10 @@ namespace {
 
 constexpr ImageSize kImage{24, 24};
 
+constexpr int kEndless = 10;  // deeper rays carry next to nothing
+constexpr ShadingChoice kChoices[] = {{5, 0},          {2, 0},   {1, 0},         {kEndless, 0.02},
+                                      {kEndless, 0.1}, {5, 0.1}, {kEndless, 0.6}};
+
 /// Glass balls over a mirror under two lights.
 Scene GlassBalls() {
   Scene scene;
@@ -28,9 +32,8 @@ Scene GlassBalls() {
 TEST(Loss, NoPixelLosesMoreThanIsSaid) {
   double said = 0, lost = 0;
   for (const Scene& scene : {Balls(2), Rings(2), Teapot(4), Tree(4), GlassBalls()}) {
-    const LinearImage endless = Traced(scene, kImage, {}, {16, 0}).Picture();
-    for (const ShadingChoice choice :
-         {ShadingChoice{5, 0}, {2, 0}, {1, 0}, {16, 0.02}, {16, 0.1}, {5, 0.1}, {16, 0.6}}) {
+    const LinearImage endless = Traced(scene, kImage, {}, {kEndless, 0}).Picture();
+    for (const ShadingChoice choice : kChoices) {
       const Traced traced(scene, kImage, {}, choice);
       const Raster raster = traced.Draw();
       const LinearImage picture = LinearPictureOf(raster, kImage, {});

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+// stipple exemplar: runs what measures; the library that draws is opened only here.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "analysis/exemplar/experiments.h"
+#include "analysis/tools/command.h"
+#include "analysis/tools/process.h"
+#include "analysis/tools/views_library.h"
+#include "analysis/trace/input_error.h"
+
+namespace stipple {
+namespace {
+
+namespace fs = std::filesystem;
+
+using DrawFunction = decltype(&stipple_draw_exemplar);
+
+std::string KnownExperiments() {
+  std::string text;
+  for (const Experiment& experiment : Experiments())
+    text += fmt::format("  {:<15} {}\n", experiment.name, experiment.meaning);
+  return text;
+}
+
+const Experiment& ExperimentNamed(const std::string& name) {
+  const auto found = std::ranges::find(Experiments(), name, &Experiment::name);
+  if (found == Experiments().end())
+    throw InputError("stipple exemplar",
+                     fmt::format("no experiment '{}'; there are:\n{}", name, KnownExperiments()));
+  return *found;
+}
+
+void RunProgram(const std::vector<std::string>& command) {
+  const int status = RunToEnd(command);
+  if (status != 0)
+    throw InputError(command.front(), fmt::format("ended with exit status {}", status));
+}
+
+void MakeFolder(const std::string& folder) {
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed) throw InputError(folder, "cannot be made: " + failed.message());
+}
+
+}  // namespace
+
+int RunExemplar(const Arguments& arguments) {
+  CLI::App app("The ray tracer's experiments: charts and a self-contained page of them.",
+               "exemplar");
+  app.footer("Experiments:\n" + KnownExperiments());
+  std::string name;
+  ExperimentSetup setup;
+  app.add_option("NAME", name, "the experiment")->required();
+  app.add_option("-o", setup.folder, "where NAME.csv, NAME.svg and index.html go; made if need be")
+      ->type_name("DIR")
+      ->required();
+  app.add_option("--from", setup.from, "draw what was measured before: a folder of CSV files")
+      ->type_name("DIR");
+  app.add_flag("--quick", setup.quick, "small and rough: to see that it works");
+  if (!Parse(app, arguments)) return 0;
+  const Experiment& experiment = ExperimentNamed(name);
+  const auto draw =
+      reinterpret_cast<DrawFunction>(FunctionOfViews("stipple exemplar", "stipple_draw_exemplar"));
+  setup.programs = fs::read_symlink("/proc/self/exe").parent_path().string();
+  setup.run = RunProgram;
+  MakeFolder(setup.folder);
+  const ExemplarInput input = experiment.charts(setup);
+  std::array<char, 1024> error{};
+  if (draw(&input, setup.folder.c_str(), error.data(), error.size()) != 0)
+    throw InputError(setup.folder, error.data());
+  WriteOut(fmt::format("{} charts: {}/index.html\n", input.charts.size(), setup.folder));
+  return 0;
+}
+
+}  // namespace stipple
