@@ -73,7 +73,7 @@ void TakeObject(const Model<Real>& model, const Object& object, Measure& measure
       return measure.Outline(corners);
     }
     case ShapeKind::kPolygon: {
-      const Polygon<Real>& polygon = model.polygons[object.index];
+      const Polygon<Real> polygon = model.PolygonAt(object.index);
       std::vector<Vec3> corners;
       for (std::uint32_t i = 0; i < polygon.vertex_count; ++i)
         corners.push_back(ToDouble(model.vertices[polygon.first_vertex + i]));

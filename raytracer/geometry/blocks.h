@@ -81,6 +81,36 @@ struct alignas(32) TriangleBlock {
   }
 };
 
+/// Planes side by side; outlines stay where the model holds them.
+template <class Real>
+struct alignas(32) PolygonBlock {
+  Real normal[3][kLanes];
+  Real offset[kLanes];
+  std::uint32_t first_vertex[kLanes];
+  std::uint32_t vertex_count[kLanes];
+  std::uint32_t first_normal[kLanes];
+  int dropped_axis[kLanes];
+
+  void Put(std::uint32_t lane, const Polygon<Real>& polygon) {
+    normal[0][lane] = polygon.normal.x;
+    normal[1][lane] = polygon.normal.y;
+    normal[2][lane] = polygon.normal.z;
+    offset[lane] = polygon.offset;
+    first_vertex[lane] = polygon.first_vertex;
+    vertex_count[lane] = polygon.vertex_count;
+    first_normal[lane] = polygon.first_normal;
+    dropped_axis[lane] = polygon.dropped_axis;
+  }
+  Polygon<Real> At(std::uint32_t lane) const {
+    return {{normal[0][lane], normal[1][lane], normal[2][lane]},
+            offset[lane],
+            first_vertex[lane],
+            vertex_count[lane],
+            first_normal[lane],
+            dropped_axis[lane]};
+  }
+};
+
 }  // namespace stipple::raytracer
 
 #endif

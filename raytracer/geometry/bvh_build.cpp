@@ -100,10 +100,11 @@ struct Split {
   float cost = 0;
 };
 
-/// Cost of testing `count` objects that begin with one of `kind`. Triangles are counted in whole
-/// blocks, others by their share of one: that is what measured best, for either.
+/// Cost of testing `count` objects that begin with one of `kind`. Triangles and polygons are
+/// counted in whole blocks, others by their share of one: what measured best, for each.
 float CostOf(ShapeKind kind, std::uint32_t count) {
-  if (kind == ShapeKind::kTriangle) return static_cast<float>((count + kLanes - 1) / kLanes);
+  if (kind == ShapeKind::kTriangle || kind == ShapeKind::kPolygon)
+    return static_cast<float>((count + kLanes - 1) / kLanes);
   if (kind == ShapeKind::kPatch) return kPatchCost * static_cast<float>(count);
   return static_cast<float>(count) / kLanes;
 }
@@ -185,10 +186,7 @@ class Builder {
   }
 
   /// Of the kind of its first object: are four tested at once?
-  bool InBlocks(const Range& range) const {
-    const ShapeKind kind = boxes_[range.begin].kind;
-    return kind != ShapeKind::kPolygon && kind != ShapeKind::kPatch;
-  }
+  bool InBlocks(const Range& range) const { return boxes_[range.begin].kind != ShapeKind::kPatch; }
 
   /// Moves a part of the range to `right`; false if it is best left whole.
   bool Divide(Range& range, Range& right) {

@@ -157,7 +157,7 @@ class EmbreeKernel final : public Kernel<Real> {
       case ShapeKind::kTriangle:
         return kTriangles;
       case ShapeKind::kPolygon:
-        return IsConvexQuad(model_.polygons[object.index]) ? kQuads : kPolygons;
+        return IsConvexQuad(model_.PolygonAt(object.index)) ? kQuads : kPolygons;
       case ShapeKind::kPatch:
         break;
     }
@@ -280,7 +280,7 @@ class EmbreeKernel final : public Kernel<Real> {
     const auto geometry = NewGeometry(RTC_GEOMETRY_TYPE_QUAD);
     Point* const corners = NewCorners(geometry, RTC_FORMAT_UINT4, count, 4);
     for (std::size_t i = 0; i < count; ++i) {
-      const Polygon<Real>& polygon = model_.polygons[SlotOf(kQuads, i)];
+      const Polygon<Real> polygon = model_.PolygonAt(SlotOf(kQuads, i));
       for (std::size_t j = 0; j < 4; ++j)
         corners[4 * i + j] = StoredPoint(model_.vertices[polygon.first_vertex + j]);
     }
@@ -305,7 +305,7 @@ class EmbreeKernel final : public Kernel<Real> {
   template <GeometryNumber kNumber>
   std::span<const Vec<Real>> HullOf(std::uint32_t primitive) const {
     if constexpr (kNumber == kPatches) return model_.patches[SlotOf(kPatches, primitive)].control;
-    const Polygon<Real>& polygon = model_.polygons[SlotOf(kPolygons, primitive)];
+    const Polygon<Real> polygon = model_.PolygonAt(SlotOf(kPolygons, primitive));
     return {model_.vertices.data() + polygon.first_vertex, polygon.vertex_count};
   }
 
@@ -313,9 +313,8 @@ class EmbreeKernel final : public Kernel<Real> {
   PatchHit<Real> Meet(std::uint32_t primitive, const Ray<Real>& ray, float max_t) const {
     if constexpr (kNumber == kPatches)
       return IntersectPatch(model_.patches[SlotOf(kPatches, primitive)], ray, Real{max_t});
-    const Polygon<Real>& polygon = model_.polygons[SlotOf(kPolygons, primitive)];
-    const std::span outline(model_.outlines.data() + polygon.first_vertex, polygon.vertex_count);
-    return {IntersectPolygon(polygon, outline, ray), 0, 0};
+    const Polygon<Real> polygon = model_.PolygonAt(SlotOf(kPolygons, primitive));
+    return {IntersectPolygon(polygon, model_.OutlineOf(polygon), ray), 0, 0};
   }
 
   template <GeometryNumber kNumber>

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "raytracer/geometry/array.h"
 #include "raytracer/geometry/blocks.h"
@@ -32,7 +33,7 @@ struct Model {
   Array<SphereBlock<Real>> spheres;
   Array<ConeBlock<Real>> cones;
   Array<TriangleBlock<Real>> triangles;
-  Array<Polygon<Real>> polygons;
+  Array<PolygonBlock<Real>> polygons;
   Array<Patch<Real>> patches;
   std::array<Array<std::uint32_t>, kShapeKinds> numbers;  // by kind and slot: object or kNoObject
   Array<Vec<Real>> vertices;
@@ -47,6 +48,12 @@ struct Model {
   Cone<Real> ConeAt(std::uint32_t slot) const { return cones[slot / kLanes].At(slot % kLanes); }
   Triangle<Real> TriangleAt(std::uint32_t slot) const {
     return triangles[slot / kLanes].At(slot % kLanes);
+  }
+  Polygon<Real> PolygonAt(std::uint32_t slot) const {
+    return polygons[slot / kLanes].At(slot % kLanes);
+  }
+  std::span<const OutlinePoint<Real>> OutlineOf(const Polygon<Real>& polygon) const {
+    return {outlines.data() + polygon.first_vertex, polygon.vertex_count};
   }
 
   /// Calls visit(array) for each array, always in the same order: who copies, shares or stores a

@@ -67,7 +67,8 @@ std::array<std::vector<std::uint32_t>, kShapeKinds> NumbersInOrder(
   std::array<std::vector<std::uint32_t>, kShapeKinds> numbers;
   for (std::uint32_t number = 0; number < objects.size(); ++number)
     numbers[static_cast<std::size_t>(objects[number].kind)].push_back(number);
-  for (const ShapeKind kind : {ShapeKind::kSphere, ShapeKind::kCone, ShapeKind::kTriangle}) {
+  for (const ShapeKind kind :
+       {ShapeKind::kSphere, ShapeKind::kCone, ShapeKind::kTriangle, ShapeKind::kPolygon}) {
     auto& of_kind = numbers[static_cast<std::size_t>(kind)];
     while (of_kind.size() % kLanes != 0) of_kind.push_back(kNoObject);
   }
@@ -92,6 +93,11 @@ template <class Real>
 Triangle<Real> NoShape(const Triangle<double>&) {
   constexpr Real n = kNan<Real>;
   return {{{n, n, n}, {n, n, n}, {n, n, n}}, kNoNormals};
+}
+template <class Real>
+Polygon<Real> NoShape(const Polygon<double>&) {
+  const Vec<Real> nowhere{kNan<Real>, kNan<Real>, kNan<Real>};
+  return {nowhere, kNan<Real>, 0, 0, kNoNormals, 0};
 }
 
 /// The shapes of one kind by slot, in blocks; uses `shapes` up and tells the objects.
@@ -161,7 +167,7 @@ Model<Real> BuildModel(Shapes&& shapes, Hierarchy hierarchy) {
   model.cones = InBlocks<Real, ConeBlock>(shapes.cones, of(ShapeKind::kCone), objects);
   model.triangles =
       InBlocks<Real, TriangleBlock>(shapes.triangles, of(ShapeKind::kTriangle), objects);
-  model.polygons = InRow<Real>(shapes.polygons, of(ShapeKind::kPolygon), objects);
+  model.polygons = InBlocks<Real, PolygonBlock>(shapes.polygons, of(ShapeKind::kPolygon), objects);
   model.patches = InRow<Real>(shapes.patches, of(ShapeKind::kPatch), objects);
   model.vertices = AllConverted<Real>(shapes.vertices);
   model.outlines = AllConverted<Real>(shapes.outlines);

@@ -53,7 +53,9 @@ class ScalarTests {
   TriangleHit<Real> Meet(ShapeKind kind, std::uint32_t slot) const {
     if (kind == ShapeKind::kSphere) return {IntersectSphere(model_.SphereAt(slot), ray_), 0, 0};
     if (kind == ShapeKind::kCone) return {IntersectCone(model_.ConeAt(slot), ray_), 0, 0};
-    return IntersectTriangle(model_.TriangleAt(slot), shear_);
+    if (kind == ShapeKind::kTriangle) return IntersectTriangle(model_.TriangleAt(slot), shear_);
+    const Polygon<Real> polygon = model_.PolygonAt(slot);
+    return {IntersectPolygon(polygon, model_.OutlineOf(polygon), ray_), 0, 0};
   }
 
   const Model<Real>& model_;

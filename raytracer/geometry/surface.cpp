@@ -88,7 +88,7 @@ Normals<Real> NormalsAt(const Model<Real>& model, const Hit<Real>& hit, Vec<Real
       return {normal, normal};
     }
     case ShapeKind::kPolygon: {
-      const Polygon<Real>& polygon = model.polygons[object.index];
+      const Polygon<Real> polygon = model.PolygonAt(object.index);
       if (polygon.first_normal == kNoNormals) return {polygon.normal, polygon.normal};
       const Vec<Real> shading = PolygonShading(model, polygon, point);
       return {Dot(polygon.normal, shading) < 0 ? -polygon.normal : polygon.normal, shading};

@@ -108,8 +108,10 @@ class VectorTests {
     Met<Real> met;
     if (kind == ShapeKind::kSphere)
       MeetSpheres(model_.spheres[block], best.t, met);
-    else
+    else if (kind == ShapeKind::kCone)
       MeetCones(model_.cones[block], best.t, met);
+    else
+      MeetPolygons(model_.polygons[block], best.t, met);
     for (; met.lanes != 0; met.lanes &= met.lanes - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(met.lanes));
       Keep<Real>({met.t[lane], 0, 0}, numbers[block * kLanes + lane], best);
@@ -122,8 +124,10 @@ class VectorTests {
       MeetSpheres(model_.spheres[block], max_t, met);
     else if (kind == ShapeKind::kCone)
       MeetCones(model_.cones[block], max_t, met);
-    else
+    else if (kind == ShapeKind::kTriangle)
       return AnyTriangle(block, max_t);
+    else
+      MeetPolygons(model_.polygons[block], max_t, met);
     for (; met.lanes != 0; met.lanes &= met.lanes - 1)
       if (met.t[std::countr_zero(met.lanes)] < max_t) return true;
     return false;
@@ -206,6 +210,56 @@ class VectorTests {
       met.lanes |= BitsOf(d, hn::And(any_met, hn::Le(t, hn::Set(d, max_t)))) << i;
       hn::Store(t, d, met.t + i);
     }
+  }
+
+  /// Planes four at a time; then the outlines of those that are met there.
+  HWY_INLINE void MeetPolygons(const PolygonBlock<Real>& block, Real max_t, Met<Real>& met) const {
+    const Lanes d;
+    const V farthest = hn::Set(d, std::min(max_t, std::numeric_limits<Real>::max()));
+    const Three<V> origin = SetThree(ray_.origin), direction = SetThree(ray_.direction);
+    HWY_ALIGN Real p[3][kLanes];
+    unsigned ahead = 0;
+    for (std::size_t i = 0; i < kLanes; i += hn::MaxLanes(d)) {
+      const Three<V> normal = LoadThree(block.normal, i);
+      const V slope = Dot(normal, direction);
+      const V t = hn::Div(hn::Sub(hn::Load(d, block.offset + i), Dot(normal, origin)), slope);
+      const unsigned lanes = BitsOf(d, hn::And(hn::Gt(t, hn::Zero(d)), hn::Le(t, farthest)));
+      if (lanes == 0) continue;
+      ahead |= lanes << i;
+      const Three<V> at = Add(origin, Mul(direction, t));
+      hn::Store(t, d, met.t + i);
+      hn::Store(at.x, d, p[0] + i);
+      hn::Store(at.y, d, p[1] + i);
+      hn::Store(at.z, d, p[2] + i);
+    }
+    for (; ahead != 0; ahead &= ahead - 1) {
+      const auto lane = static_cast<unsigned>(std::countr_zero(ahead));
+      const int axis = block.dropped_axis[lane];
+      const OutlinePoint<Real> q{p[axis == 2 ? 0 : axis + 1][lane],
+                                 p[axis == 0 ? 2 : axis - 1][lane]};
+      if (Inside(block.first_vertex[lane], block.vertex_count[lane], q)) met.lanes |= 1U << lane;
+    }
+  }
+
+  /// As `InsideOutline`; outlines with as many edges as a vector has lanes all at once.
+  HWY_INLINE bool Inside(std::uint32_t first, std::uint32_t count, OutlinePoint<Real> p) const {
+    const OutlinePoint<Real>* const outline = model_.outlines.data() + first;
+    const Lanes d;
+    if (count != hn::MaxLanes(d)) return InsideOutline(std::span(outline, count), p);
+    V a_u, a_v;
+    hn::LoadInterleaved2(d, &outline->u, a_u, a_v);
+    // Each edge's other end is that of the next lane.
+    alignas(32) static constexpr hwy::MakeSigned<Real> kNext[4] = {1, 2, 3, 0};
+    const auto next = hn::SetTableIndices(d, kNext);
+    const V b_u = hn::TableLookupLanes(a_u, next), b_v = hn::TableLookupLanes(a_v, next);
+    const V p_u = hn::Set(d, p.u), p_v = hn::Set(d, p.v);
+    const auto a_above = hn::Gt(a_v, p_v), b_above = hn::Gt(b_v, p_v);
+    // Of an edge that crosses, the lower end is the one not above.
+    const V low_u = hn::IfThenElse(a_above, b_u, a_u), low_v = hn::IfThenElse(a_above, b_v, a_v);
+    const V high_u = hn::IfThenElse(a_above, a_u, b_u), high_v = hn::IfThenElse(a_above, a_v, b_v);
+    const auto right = hn::Gt(hn::Mul(hn::Sub(high_u, low_u), hn::Sub(p_v, low_v)),
+                              hn::Mul(hn::Sub(p_u, low_u), hn::Sub(high_v, low_v)));
+    return std::popcount(BitsOf(d, hn::And(hn::Xor(a_above, b_above), right))) % 2 != 0;
   }
 
   struct MetTriangles : Met<Real> {

@@ -53,17 +53,12 @@ HWY_NOINLINE BoxRay ReadyForBoxes(const Frame& frame, const Ray<Real>& ray) {
   return BoxRay(frame, {in_double(ray.origin), in_double(ray.direction)}, kRounding<Real>);
 }
 
-/// Polygons and patches, one by one. Patches need not be met farther out than `max_t`.
+/// Patches, one by one. They need not be met farther out than `max_t`.
 template <class Real>
-HWY_INLINE TriangleHit<Real> MeetSingle(const Model<Real>& model, const Ray<Real>& ray,
-                                        ShapeKind kind, std::uint32_t slot, Real max_t) {
-  if (kind == ShapeKind::kPatch) {
-    const PatchHit<Real> hit = IntersectPatch(model.patches[slot], ray, max_t);
-    return {hit.t, hit.u, hit.v};
-  }
-  const Polygon<Real>& polygon = model.polygons[slot];
-  const std::span outline(model.outlines.data() + polygon.first_vertex, polygon.vertex_count);
-  return {IntersectPolygon(polygon, outline, ray), 0, 0};
+HWY_INLINE TriangleHit<Real> MeetPatch(const Model<Real>& model, const Ray<Real>& ray,
+                                       std::uint32_t slot, Real max_t) {
+  const PatchHit<Real> hit = IntersectPatch(model.patches[slot], ray, max_t);
+  return {hit.t, hit.u, hit.v};
 }
 
 /// Of equal distances the lower object number wins.
@@ -157,9 +152,9 @@ class Walk {
     const std::uint32_t first = leaf.First(), objects = leaf.Objects();
     const ShapeKind kind = leaf.Kind();
     const Array<std::uint32_t>& numbers = model_.numbers[static_cast<std::size_t>(kind)];
-    if (kind == ShapeKind::kPolygon || kind == ShapeKind::kPatch) {
+    if (kind == ShapeKind::kPatch) {
       for (std::uint32_t i = 0; i < objects; ++i)
-        Keep(MeetSingle(model_, ray_, kind, first + i, best.t), numbers[first + i], best);
+        Keep(MeetPatch(model_, ray_, first + i, best.t), numbers[first + i], best);
     } else {
       for (std::uint32_t done = 0; done < objects; done += kLanes)
         tests.NearestInBlock(kind, first + done / kLanes, numbers.data(), best);
@@ -207,10 +202,10 @@ class Walk {
   HWY_INLINE bool AnyInLeaf(const Tests& tests, ChildRef leaf, Real max_t) {
     const std::uint32_t first = leaf.First(), objects = leaf.Objects();
     const ShapeKind kind = leaf.Kind();
-    if (kind == ShapeKind::kPolygon || kind == ShapeKind::kPatch) {
+    if (kind == ShapeKind::kPatch) {
       for (std::uint32_t i = 0; i < objects; ++i) {
         ++primitive_tests_;
-        if (MeetSingle(model_, ray_, kind, first + i, max_t).t < max_t) return true;
+        if (MeetPatch(model_, ray_, first + i, max_t).t < max_t) return true;
       }
       return false;
     }

@@ -27,7 +27,7 @@ inline constexpr std::uint32_t kMaxChildren = 8;
 
 /// What stands at the end of a link of the hierarchy: a node, or a leaf of objects of one kind.
 /// Node: highest bit 0, children - 1 in 3 bits, its number in 28. Leaf: highest bit 1, kind in 3
-/// bits, objects - 1 in 3 bits, its first place in 25: a block, or an index of a polygon or patch.
+/// bits, objects - 1 in 3 bits, its first place in 25: a block, or an index of a patch.
 class ChildRef {
  public:
   static constexpr std::uint32_t kMaxLeafObjects = 8;

@@ -150,7 +150,7 @@ void ExpectContained(const Model<double>& model, const Shapes& shapes, ChildRef 
   const Frame& frame = model.frame[0];
   if (at.IsLeaf()) {
     const auto kind = static_cast<std::size_t>(at.Kind());
-    const bool in_blocks = at.Kind() < ShapeKind::kPolygon;
+    const bool in_blocks = at.Kind() != ShapeKind::kPatch;
     for (std::uint32_t i = 0; i < at.Objects(); ++i, ++objects) {
       const std::uint32_t slot = at.First() * (in_blocks ? kLanes : 1) + i;
       const Bounds box = BoundsOf(shapes, shapes.objects[model.numbers[kind][slot]]);

@@ -179,9 +179,9 @@ int LostSquares(std::string_view name, double shift) {
     const WideVec target = middles[static_cast<std::size_t>(i) % middles.size()];
     const Ray<Real> ray = RoundedRay<Real>(target + random.Direction() * 5, target);
     Real nearest = kMiss<Real>;
-    for (const Polygon<Real>& polygon : model.polygons) {
-      const std::span outline(model.outlines.data() + polygon.first_vertex, polygon.vertex_count);
-      nearest = std::min(nearest, IntersectPolygon(polygon, outline, ray));
+    for (const Object& object : model.objects) {
+      const Polygon<Real> polygon = model.PolygonAt(object.index);
+      nearest = std::min(nearest, IntersectPolygon(polygon, model.OutlineOf(polygon), ray));
     }
     hits += nearest != kMiss<Real> ? 1 : 0;
     lost += kernel->Intersect(ray, tests).t != nearest ? 1 : 0;
