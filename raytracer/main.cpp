@@ -11,6 +11,8 @@
 
 #include "raytracer/errors.h"
 #include "raytracer/geometry/kernel.h"
+#include "raytracer/image/compare.h"
+#include "raytracer/image/exr_file.h"
 #include "raytracer/image/png_file.h"
 #include "raytracer/options.h"
 #include "raytracer/plan.h"
@@ -30,18 +32,12 @@ constexpr int kDifferent = 1;  // exit status of --compare
 constexpr int kUnusable = 2;   // exit status after InputError and UsageError
 
 int PrintComparison(const Options& options) {
-  const Image a = ReadPng(options.compare.first);
-  const Image b = ReadPng(options.compare.second);
+  const LinearImage a = ReadPicture(options.compare.first);
+  const LinearImage b = ReadPicture(options.compare.second);
   const ImageDifference difference = Compare(a, b);
-  if (!difference.same_size)
-    fmt::print("different sizes: {}x{} and {}x{} pixels\n", a.size.width, a.size.height,
-               b.size.width, b.size.height);
-  else if (difference.Identical())
-    fmt::print("identical: {}x{} pixels, max difference 0, RMS difference 0\n", a.size.width,
-               a.size.height);
-  else
-    fmt::print("different: {} of {}x{} pixels, max difference {} of 255, RMS difference {:.4f}\n",
-               difference.pixels, a.size.width, a.size.height, difference.max, difference.rms);
+  if (!options.output.empty() && difference.SameSize())
+    WritePng(DifferencePicture(a, b), options.output);
+  fmt::print("{}", DifferenceText(difference));
   return difference.Identical() ? 0 : kDifferent;
 }
 
@@ -64,7 +60,7 @@ Rendered RenderScene(const World& world, const Scene& scene, const Model<Real>& 
                                static_cast<std::uint64_t>(options.seed)};
   const ShadingChoice shading{depth, options.min_contribution};
   const auto sampler = MakeSampler(scene, model, kernel, shading, image, options.samples);
-  return Render(world, *sampler, options.partition, choice);
+  return Render(world, *sampler, options.partition, choice, options.samples);
 }
 
 void WriteText(const std::string& text, const std::string& path) {
@@ -76,7 +72,10 @@ void WriteText(const std::string& text, const std::string& path) {
 
 void WritePictures(const Raster& raster, ImageSize image, const Options& options) {
   Mark(Moment::kOutputBegins);
-  if (!options.output.empty()) WritePng(PictureOf(raster, image, options.samples), options.output);
+  if (options.output.ends_with(".exr"))
+    WriteExr(LinearPictureOf(raster, image, options.samples), options.output);
+  else if (!options.output.empty())
+    WritePng(PictureOf(raster, image, options.samples), options.output);
   if (options.cost_map.ends_with(".png"))
     WritePng(CostImageOf(raster, image, options.samples), options.cost_map);
   else if (!options.cost_map.empty())
@@ -136,8 +135,11 @@ void RenderAndReport(const World& world, const Options& options) {
   report.render_cpu_s = watch.LapCpu();
   report.counts = rendered.counts;
   report.messages = rendered.messages;
-  OnRank(world, AssemblingRank(world, options.partition),
-         [&] { WritePictures(rendered.raster, scene.view.resolution, options); });
+  OnRank(world, AssemblingRank(world, options.partition), [&] {
+    const ImageSize image = scene.view.resolution;
+    report.loss = LossOf(rendered.raster, image, options.samples);
+    WritePictures(rendered.raster, image, options);
+  });
   const RunReport run{shared.model.objects.size(), facts.model_bytes, GatherReports(world, report)};
   OnRank(world, 0, [&] {
     WriteReport(run, options);
@@ -152,6 +154,7 @@ void WriteScene(const Options& options) {
 }
 
 void LoadAndRender(const World& world, const Options& options) {
+  if (options.output.ends_with(".exr")) OnRank(world, 0, [&] { NeedExr(options.output); });
   if (!options.write_scene.empty())
     OnRank(world, 0, [&] { WriteScene(options); });
   else if (options.precision == "float")

@@ -109,8 +109,10 @@ class Setter {
                         static_cast<int>(ToCount(spec_, text_, all.substr(cross + 1)))};
   }
   void operator()(Samples Options::*member) const {
-    (options_.*member).per_pixel =
-        text_ == "corners" ? 0 : static_cast<int>(ToCount(spec_, text_, text_));
+    Samples& samples = options_.*member;
+    samples.adaptive = text_ == "adaptive";
+    const bool named = samples.adaptive || text_ == "corners";
+    samples.per_pixel = named ? 0 : static_cast<int>(ToCount(spec_, text_, text_));
   }
   void operator()(std::pair<std::string, std::string> Options::*member) const {
     options_.*member = {words_.at(0), words_.at(1)};
@@ -183,6 +185,7 @@ Options ParseOptions(int argc, const char* const* argv) {
   if (!unknown.empty())
     throw UsageError(
         fmt::format("{}: unknown option; known are{}", unknown.front(), KnownOptions()));
+  options.samples.tolerance = options.tolerance;
   if (options.kernel == "embree" && !options.cost_map.empty())
     throw UsageError("--cost-map with --kernel embree: Embree does not count its tests");
   return options;

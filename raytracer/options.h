@@ -28,6 +28,7 @@ struct Options {
   std::string select = "contiguous";
   std::int64_t seed = 1;
   Samples samples;
+  double tolerance = Samples{}.tolerance;
   std::int64_t max_depth = 5;
   double min_contribution = 0;
   std::string precision = "double";
@@ -78,12 +79,17 @@ inline constexpr OptionSpec kOptions[] = {
     {"select", &Options::select, "contiguous|modulo|random",
      "which pixels make a bundle: neighbours, every B-th of B bundles, or a random choice"},
     {"seed", &Options::seed, "N", "of the random choice", 0, 9e15},
-    {"samples", &Options::samples, "corners|N",
-     "rays per pixel: its four corners, shared with its neighbours, or N inside", 1, 4096},
+    {"samples", &Options::samples, "corners|N|adaptive",
+     "rays per pixel: its four corners, shared with its neighbours, N inside, or from 8 to 256 as "
+     "the pixel needs",
+     1, 4096},
+    {"tolerance", &Options::tolerance, "E",
+     "of --samples adaptive: smaller means more rays where they lower the picture's error", 1e-6,
+     1},
     {"max-depth", &Options::max_depth, "D", "rays to follow one after another; eye rays are 1", 1,
      64},
     {"min-contribution", &Options::min_contribution, "C",
-     "do not trace rays that change a pixel by less (of 1)", 0, 1},
+     "do not trace rays whose share of an eye ray's colour is less (of 1)", 0, 1},
     {"precision", &Options::precision, "double|float", "kind of number that rays are computed in"},
     {"kernel", &Options::kernel, "bvh|scalar|embree",
      "what finds hits: the own hierarchy, the same without vector instructions, or Embree"},
@@ -93,14 +99,17 @@ inline constexpr OptionSpec kOptions[] = {
     {"memory-limit", &Options::memory_limit, "BYTES",
      "refuse a scene that takes more on a node; K, M, G and T are understood (what the node has)",
      1, 9e15},
-    {"output", &Options::output, "F.png", "write the picture"},
+    {"output", &Options::output, "F.png|F.exr",
+     "write the picture, as 8-bit colours or as floating-point numbers"},
     {"cost-map", &Options::cost_map, "F.png|F.csv",
-     "write what each pixel cost, as grey levels or as a table x,y,work,object,in_shadow,depth"},
+     "write what each pixel cost, as colours or as a table x,y,work,object,in_shadow,depth"},
     {"stats", &Options::stats, "F.json", "write counts and times"},
     {"write-scene", &Options::write_scene, "F.nff", "write the scene and stop"},
     {"explain", &Options::explain, "", "say what is adapted to this scene, and why"},
     {"compare", &Options::compare, "A.png B.png",
-     "say how far two pictures differ and stop; exit status 0 if they are identical, else 1"},
+     "say how far two pictures (or .exr) differ and stop; exit status 0 if they are identical, "
+     "else "
+     "1; --output shows where"},
 };
 
 /// Errors: UsageError, naming the option or value and what is known.

@@ -11,6 +11,7 @@
 
 #include "raytracer/errors.h"
 #include "raytracer/scene/patches.h"
+#include "raytracer/scene/scene_cache.h"
 
 namespace stipple::raytracer {
 namespace {
@@ -95,21 +96,20 @@ struct Decision {
 };
 
 Decision Precision(const SceneFacts& facts, const Options& options) {
-  const std::string error = fmt::format(
-      "float would err by {:.2g} of the smallest feature ({:.3g}, with coordinates and "
-      "distances to {:.3g}); allowed {}",
-      FloatError(facts), facts.smallest, facts.reach, kFloatErrorAllowed);
-  return {options.precision, options.precision == "float"
-                                 ? error
-                                 : error + "; double, exact to the pixel, takes a tenth more time"};
+  return {
+      options.precision,
+      fmt::format("float errs by {:.2g} of the smallest feature ({:.3g}, seen over {:.3g}), {} is "
+                  "allowed; double takes a tenth more time",
+                  FloatError(facts), facts.smallest, facts.reach, kFloatErrorAllowed)};
 }
 
 Decision Shape(const SceneFacts& facts, const Options&) {
-  return {"as they are",
-          fmt::format("{} spheres, {} cones, {} triangles, {} polygons: quadrics are met exactly; "
-                      "as triangles they would take 1000 times the memory for a worse picture",
-                      facts.CountOf(ShapeKind::kSphere), facts.CountOf(ShapeKind::kCone),
-                      facts.CountOf(ShapeKind::kTriangle), facts.CountOf(ShapeKind::kPolygon))};
+  return {
+      "as they are",
+      fmt::format("{} spheres, {} cones, {} triangles, {} polygons: quadrics are met exactly, cut "
+                  "into triangles they would take 100 times the memory for a worse picture",
+                  facts.CountOf(ShapeKind::kSphere), facts.CountOf(ShapeKind::kCone),
+                  facts.CountOf(ShapeKind::kTriangle), facts.CountOf(ShapeKind::kPolygon))};
 }
 
 Decision Patches(const SceneFacts& facts, const Options& options) {
@@ -122,12 +122,16 @@ Decision Patches(const SceneFacts& facts, const Options& options) {
   if (patches.cells == 0)
     return {"met directly", fmt::format("{}{}; up to {} are made", asked, needed, kMostPatchCells)};
   return {fmt::format("{0} x {0} cells", patches.cells),
-          fmt::format("{}off by {:.2g} pixel; {}", asked, patches.error_pixels, needed)};
+          fmt::format("{}off by {:.2g} pixel at most; {}", asked, patches.error_pixels, needed)};
 }
 
 Decision SamplesOfPixel(const SceneFacts&, const Options& options) {
   if (options.samples.corners())
     return {"corners", "one ray a pixel, shared with its neighbours: 5 dB better than one inside"};
+  if (options.samples.adaptive)
+    return {
+        "8 to 256 a pixel",
+        "as each needs: 1 to 4 dB better than N for the same work where some pixels are simple"};
   return {fmt::format("{} a pixel", options.samples.per_pixel),
           "as asked: in strata, error falls with the 0.66th power of their number"};
 }
@@ -140,32 +144,49 @@ Decision Depth(const SceneFacts& facts, const Options& options) {
               ? fmt::format("rays that carry less than {} are cut; what they could add at most is "
                             "in the answer",
                             options.min_contribution)
-              : "and no ray is cut: SPD's rule; --min-contribution 0.02 saves up to a fifth of the "
-                "rays for 0.1 dB"};
+              : "no ray is cut, as SPD has it; for pictures --min-contribution 0.02 saves up to a "
+                "fifth and loses 0.1 dB at most"};
 }
 
 Decision Shading(const SceneFacts& facts, const Options&) {
-  if (facts.extended) return {"extended", "media with priorities, or lights that rays can meet"};
-  if (facts.transmits) return {"with refraction", "no media that overlap, no lights with a radius"};
-  return {"opaque", "nothing transmits: the code of refraction and media is not run"};
+  switch (facts.rules) {
+    case Rules::kOpaque:
+      return {"opaque", "nothing transmits: a tracer without refraction and media"};
+    case Rules::kTransmitting:
+      return {"refracting", "each transparent object lies in air: a tracer without media"};
+    case Rules::kExtended:
+      break;
+  }
+  return {"extended", "media with priorities, or lights that rays can meet"};
 }
 
 Decision Hierarchy(const SceneFacts& facts, const Options& options) {
   if (options.kernel == "embree") return {"Embree's", "as asked, in float"};
-  return {"always",
-          fmt::format("{} objects: already with 3 it takes fewer tests than trying all of them",
-                      facts.Objects())};
+  return {"always", fmt::format("{} objects; it pays from 3 on", facts.Objects())};
 }
 
 Decision RayGroups(const SceneFacts&, const Options&) {
   return {"one by one",
-          "packets pay for eye rays on meshes only, and cost up to twice the time elsewhere"};
+          "packets pay for eye rays on meshes only; elsewhere they take up to twice the time"};
 }
 
 Decision Memory(const SceneFacts& facts, const Options&) {
-  const std::uint64_t objects = std::max<std::uint64_t>(1, facts.Objects());
-  return {"a copy per node", fmt::format("{} bytes, {} an object: no rays travel to objects",
-                                         facts.model_bytes, facts.model_bytes / objects)};
+  const auto bytes = static_cast<double>(facts.model_bytes);
+  return {"a copy per node",
+          fmt::format("{:.1f} MB, {:.0f} bytes an object: no ray has to travel to its objects",
+                      bytes * 1e-6, bytes / std::max(1.0, static_cast<double>(facts.Objects())))};
+}
+
+Decision Cache(const SceneFacts& facts, const Options& options) {
+  if (options.scene.find_first_of("./") == std::string::npos)
+    return {"none", "the scene is generated, which is faster than reading it"};
+  if (facts.Objects() < kLeastCachedObjects)
+    return {"none", fmt::format("fewer than {} objects are read in a tenth of a second",
+                                kLeastCachedObjects)};
+  return {"kept",
+          fmt::format("from {} objects on reading text takes longer than drawing: next time "
+                      "the model is mapped from {}",
+                      kLeastCachedObjects, CacheFolder())};
 }
 
 struct DecisionRow {
@@ -175,7 +196,8 @@ struct DecisionRow {
 constexpr DecisionRow kDecisions[] = {
     {"precision", Precision},    {"shapes", Shape},   {"patches", Patches},
     {"samples", SamplesOfPixel}, {"depth", Depth},    {"shading", Shading},
-    {"hierarchy", Hierarchy},    {"rays", RayGroups}, {"memory", Memory},
+    {"hierarchy", Hierarchy},    {"rays", RayGroups}, {"cache", Cache},
+    {"memory", Memory},
 };
 
 }  // namespace
@@ -196,11 +218,9 @@ SceneFacts FactsOf(const Scene& scene, Model<Real>& model) {
       [&](const auto& array) { facts.model_bytes += array.size() * sizeof(array[0]); });
   facts.patches = scene.patches;
   for (const Material& material : scene.materials) {
-    facts.transmits |= material.transmission > 0;
     facts.mirrors |= material.specular > 0 || material.transmission > 0;
-    facts.extended |= material.priority > 0;
   }
-  for (const Light& light : scene.lights) facts.extended |= light.radius > 0;
+  facts.rules = RulesOf(scene);
   return facts;
 }
 

@@ -14,6 +14,7 @@
 
 #include "raytracer/geometry/model.h"
 #include "raytracer/options.h"
+#include "raytracer/render/shading.h"
 #include "raytracer/scene/scene.h"
 
 namespace stipple::raytracer {
@@ -31,9 +32,8 @@ struct SceneFacts {
   /// edge of a triangle, polygon or patch.
   double smallest = std::numeric_limits<double>::infinity();
 
-  bool mirrors = false;    // some material reflects or lets through: rays go on
-  bool transmits = false;  // some material lets through
-  bool extended = false;   // media with priorities, or lights that rays can meet
+  bool mirrors = false;          // some material reflects or lets through: rays go on
+  Rules rules = Rules::kOpaque;  // how much of the model of shading it uses
 
   std::uint64_t Objects() const;
   std::uint64_t CountOf(ShapeKind kind) const { return count[static_cast<std::size_t>(kind)]; }

@@ -53,6 +53,41 @@ double Slowest(const RunReport& report, double RankReport::*seconds) {
 
 std::uint64_t WorkOf(const RankReport& report) { return report.counts.Work(); }
 
+/// Only one rank has the picture.
+LossBound LossIn(const RunReport& report) {
+  return std::ranges::max(report.ranks, {}, [](const RankReport& r) { return r.loss.worst; }).loss;
+}
+
+std::string CountLines(const RunReport& report, std::uint64_t rays) {
+  RayCounts sum;
+  std::uint64_t messages = 0;
+  for (const RankReport& rank : report.ranks) {
+    sum.eye_rays += rank.counts.eye_rays;
+    sum.eye_hits += rank.counts.eye_hits;
+    sum.shadow_rays += rank.counts.shadow_rays;
+    sum.shadow_hits += rank.counts.shadow_hits;
+    sum.reflected_rays += rank.counts.reflected_rays;
+    sum.refracted_rays += rank.counts.refracted_rays;
+    sum.tests.box_tests += rank.counts.tests.box_tests;
+    sum.tests.primitive_tests += rank.counts.tests.primitive_tests;
+    messages += rank.messages;
+  }
+  const auto per_ray = [&](std::uint64_t tests) {
+    return static_cast<double>(tests) / static_cast<double>(std::max<std::uint64_t>(rays, 1));
+  };
+  const auto slowest = [&](double RankReport::*seconds) { return Slowest(report, seconds); };
+  return fmt::format(
+      "  rays: {} eye ({} met an object), {} shadow ({} in shadow), {} reflected, {} refracted\n"
+      "  tests per ray: {:.1f} boxes, {:.1f} primitives\n"
+      "  seconds: {:.3f} to load, {:.3f} to build, {:.3f} to render; CPU {:.3f} and {:.3f}\n"
+      "  memory for objects: {:.1f} MB; messages: {}\n",
+      sum.eye_rays, sum.eye_hits, sum.shadow_rays, sum.shadow_hits, sum.reflected_rays,
+      sum.refracted_rays, per_ray(sum.tests.box_tests), per_ray(sum.tests.primitive_tests),
+      slowest(&RankReport::load_s), slowest(&RankReport::build_s), slowest(&RankReport::render_s),
+      slowest(&RankReport::build_cpu_s), slowest(&RankReport::render_cpu_s),
+      static_cast<double>(report.model_bytes) * 1e-6, messages);
+}
+
 }  // namespace
 
 std::vector<RankReport> GatherReports(const World& world, const RankReport& report) {
@@ -68,6 +103,9 @@ std::string StatsJson(const RunReport& report) {
   json["ranks"] = report.ranks.size();
   for (const CountRow& row : kCounts) json[std::string(row.key)] = Sum(report, row.value);
   for (const TimeRow& row : kTimes) json[std::string(row.key)] = Slowest(report, row.seconds);
+  const LossBound loss = LossIn(report);
+  json["lost_mean"] = loss.mean;
+  json["lost_worst"] = loss.worst;
   for (const RankReport& rank : report.ranks) json["work"].push_back(WorkOf(rank));
   return json.dump(2) + "\n";
 }
@@ -84,10 +122,14 @@ std::string Summary(const RunReport& report) {
       "{} rays through {} objects in {:.3f} s on {} {}: {:.2f} million rays per second.\n", rays,
       report.objects, seconds, report.ranks.size(), report.ranks.size() == 1 ? "rank" : "ranks",
       seconds > 0 ? static_cast<double>(rays) / seconds * 1e-6 : 0.0);
-  for (const CountRow& row : kCounts)
-    text += fmt::format("  {:<16} {:>13}\n", row.key, Sum(report, row.value));
-  for (const TimeRow& row : kTimes)
-    text += fmt::format("  {:<16} {:>13.3f}\n", row.key, Slowest(report, row.seconds));
+  text += CountLines(report, rays);
+  const LossBound loss = LossIn(report);
+  text += loss.worst > 0
+              ? fmt::format(
+                    "  rays not followed could have added at most {:.2g} of a pixel's range "
+                    "on average, {:.2g} at the worst pixel\n",
+                    loss.mean, loss.worst)
+              : "  every ray was followed to its end\n";
   if (tracing > 1 && work > 0)
     text += fmt::format("  work of the busiest tracing rank over the mean: {:.2f}\n",
                         static_cast<double>(most) * tracing / work);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "raytracer/render/picture.h"
 #include "raytracer/render/tracer.h"
 #include "raytracer/render/world.h"
 
@@ -16,6 +17,7 @@ namespace stipple::raytracer {
 struct RankReport {
   RayCounts counts;
   std::uint64_t messages = 0;
+  LossBound loss;  // of the picture; nothing on ranks that do not have it
   double load_s = 0, build_s = 0, render_s = 0;
   double build_cpu_s = 0, render_cpu_s = 0;  // of the process, all its threads
 };
@@ -31,7 +33,8 @@ std::vector<RankReport> GatherReports(const World& world, const RankReport& repo
 
 /// JSON with the keys objects model_bytes eye_rays eye_hits shadow_rays shadow_hits reflected_rays
 /// refracted_rays box_tests primitive_tests load_s build_s render_s build_cpu_s render_cpu_s
-/// messages ranks (integers, seconds; times are the slowest rank's), and `work`: box and primitive
+/// messages ranks (integers, seconds; times are the slowest rank's), lost_mean lost_worst (how much
+/// brighter pixels could be if every ray had been followed; of 1), and `work`: box and primitive
 /// tests of each rank.
 std::string StatsJson(const RunReport& report);
 

@@ -5,11 +5,11 @@
 //
 // 1. A part whose coefficients are all on one side of a plane, behind the ray's origin or beyond
 //    max_t is dropped: it lies within the hull of its coefficients.
-// 2. If the derivatives of a part, seen through the inverse of their mean, are within 1/3 of the
-//    unit matrix everywhere (their own coefficients bound them), the part has at most one root, and
-//    Newton's method from its middle, kept inside the part, converges to it: with q = 1/3 each step
-//    leaves at most 2 q / (1 - q) = 1 of the distance, less as J varies less, and in the end
-//    the square of it. A part without a root is noticed when the steps push out of it.
+// 2. If the derivatives of a part, seen through the inverse of their mean, are within q = 1/4 of
+//    the unit matrix everywhere (their own coefficients bound them), the part has at most one root,
+//    and Newton's method from its middle, kept inside the part, converges to it: each step leaves
+//    at most 2 q / (1 - q) = 2/3 of the distance, and soon its square. A step that ends farther
+//    outside than that allows proves that there is no root.
 // 3. Else it is halved along its longer direction, the nearer half first.
 //
 // Rays that touch the patch, or go through a point where it has no tangent plane, end at parts so

@@ -13,6 +13,7 @@
 #define STIPPLE_RAYTRACER_GEOMETRY_WALK_INL_H
 #endif
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <bit>
@@ -139,6 +140,7 @@ class Walk {
     do {
       lane = static_cast<unsigned>(std::countr_zero(met));
       met &= met - 1;
+      Fetch(node.child[lane]);
       const std::uint64_t other = Waiting(enter[lane], node.child[lane]);
       const std::uint64_t far = std::max(nearest, other);
       nearest = std::min(nearest, other);
@@ -177,12 +179,29 @@ class Walk {
         box_tests_ += at.Children();
         const WideNode& node = model_.nodes[at.Node()];
         HWY_ALIGN float enter[kMaxChildren];
-        for (unsigned met = tests.Boxes(node, limit, enter); met != 0; met &= met - 1)
-          *top++ = node.child[std::countr_zero(met)].bits();
+        unsigned met = tests.Boxes(node, limit, enter);
+        if (met != 0) {
+          at = node.child[std::countr_zero(met)];
+          for (met &= met - 1; met != 0; met &= met - 1) {
+            const ChildRef waits = node.child[std::countr_zero(met)];
+            Fetch(waits);
+            *top++ = waits.bits();
+          }
+          continue;
+        }
       }
       if (top == stack) return false;
       at = ChildRef::OfBits(*--top);
     }
+  }
+
+  /// Has a node brought to the cache while others are visited.
+  HWY_INLINE void Fetch(ChildRef waits) const {
+    if (waits.IsLeaf()) return;
+    const auto* const node = reinterpret_cast<const char*>(model_.nodes.data() + waits.Node());
+    hwy::Prefetch(node);
+    hwy::Prefetch(node + 64);
+    hwy::Prefetch(node + 128);
   }
 
   HWY_INLINE bool AnyInLeaf(const Tests& tests, ChildRef leaf, Real max_t) {

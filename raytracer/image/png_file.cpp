@@ -4,10 +4,6 @@
 #include <fmt/format.h>
 #include <png.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
-
 #include "raytracer/errors.h"
 
 namespace stipple::raytracer {
@@ -48,25 +44,6 @@ Image ReadPng(const std::string& path) {
   if (png_image_finish_read(&png, &black, image.rgb.data(), 0, nullptr) == 0)
     throw InputError(path, 0, fmt::format("cannot be read: {}", png.message));
   return image;
-}
-
-ImageDifference Compare(const Image& a, const Image& b) {
-  ImageDifference difference;
-  difference.same_size = a.size == b.size;
-  if (!difference.same_size) return difference;
-  double squares = 0;
-  for (std::size_t pixel = 0; pixel < a.rgb.size(); pixel += 3) {
-    bool differs = false;
-    for (std::size_t i = pixel; i < pixel + 3; ++i) {
-      const int d = std::abs(a.rgb[i] - b.rgb[i]);
-      difference.max = std::max(difference.max, d);
-      squares += static_cast<double>(d) * d;
-      differs = differs || d != 0;
-    }
-    if (differs) ++difference.pixels;
-  }
-  if (!a.rgb.empty()) difference.rms = std::sqrt(squares / static_cast<double>(a.rgb.size()));
-  return difference;
 }
 
 }  // namespace stipple::raytracer

@@ -6,6 +6,7 @@
 // It ends because each node sends exactly one message per bundle it was given and one more, and the
 // host answers each one.
 #include "raytracer/render/marks.h"
+#include "raytracer/render/progress.h"
 #include "raytracer/render/render.h"
 
 namespace stipple::raytracer {
@@ -16,18 +17,20 @@ constexpr int kBundleTag = 3;
 constexpr std::uint32_t kNoBundle = 0xffffffff;
 
 [[gnu::noinline]] std::vector<RayResult> TraceBundle(Sampler& sampler,
-                                                     const std::vector<RasterPoint>& points) {
+                                                     const std::vector<RasterPoint>& points,
+                                                     const Round& round) {
   std::vector<RayResult> results;
   results.reserve(points.size());
-  for (const RasterPoint point : points) results.push_back(sampler.Sample(point));
+  for (const RasterPoint point : points) results.push_back(round.Trace(sampler, point));
   RecordCounts(sampler.counts());
   return results;
 }
 
 class Host {
  public:
-  Host(const World& world, const PartitionChoice& choice)
+  Host(const World& world, const PartitionChoice& choice, const Round& round)
       : world_(world),
+        round_(round),
         bundles_(choice),
         given_(static_cast<std::size_t>(world.size - 1), kNoBundle),
         working_(world.size - 1),
@@ -35,12 +38,17 @@ class Host {
         incoming_(choice.bundle < raster_.size() ? choice.bundle : raster_.size()) {}
 
   void Serve() {
+    SkipEmpty();
+    Progress progress(round_.Count(raster_.size()), true);
     while (working_ > 0) {
       MPI_Status status;
       MPI_Recv(incoming_.data(), static_cast<int>(incoming_.size()), type_.get(), MPI_ANY_SOURCE,
                kResultTag, world_.comm, &status);
       const std::uint32_t finished = HandOut(status.MPI_SOURCE);
-      if (finished != kNoBundle) Place(bundles_.Points(finished), incoming_, raster_);
+      if (finished == kNoBundle) continue;
+      const std::vector<RasterPoint> points = round_.Of(bundles_.Points(finished));
+      Place(points, incoming_, raster_);
+      progress.Advance(points.size());
     }
   }
 
@@ -53,6 +61,7 @@ class Host {
     std::uint32_t& given = given_[static_cast<std::size_t>(node)];
     const std::uint32_t finished = given;
     given = next_ < bundles_.count() ? next_++ : kNoBundle;
+    SkipEmpty();
     MPI_Send(&given, 1, MPI_UINT32_T, node, kBundleTag, world_.comm);
     ++messages_;
     if (given == kNoBundle) {
@@ -64,7 +73,13 @@ class Host {
     return finished;
   }
 
+  /// Bundles of which this round traces nothing are not handed out.
+  void SkipEmpty() {
+    while (next_ < bundles_.count() && round_.Of(bundles_.Points(next_)).empty()) ++next_;
+  }
+
   const World& world_;
+  const Round& round_;
   Bundles bundles_;
   std::uint32_t next_ = 0;
   std::vector<std::uint32_t> given_;  // by node: the bundle it is working on
@@ -76,16 +91,16 @@ class Host {
 };
 
 [[gnu::noinline]] std::uint64_t Serve(const World& world, const PartitionChoice& choice,
-                                      Raster& raster) {
+                                      const Round& round, Raster& raster) {
   MarkHost();
-  Host host(world, choice);
+  Host host(world, choice, round);
   host.Serve();
   raster = host.TakeRaster();
   return host.messages();
 }
 
 [[gnu::noinline]] std::uint64_t TraceOnDemand(const World& world, Sampler& sampler,
-                                              const PartitionChoice& choice) {
+                                              const PartitionChoice& choice, const Round& round) {
   const Bundles bundles(choice);
   const ResultType type;
   const int host = world.size - 1;
@@ -98,19 +113,19 @@ class Host {
     std::uint32_t bundle = kNoBundle;
     MPI_Recv(&bundle, 1, MPI_UINT32_T, host, kBundleTag, world.comm, MPI_STATUS_IGNORE);
     if (bundle == kNoBundle) return messages;
-    results = TraceBundle(sampler, bundles.Points(bundle));
+    results = TraceBundle(sampler, round.Of(bundles.Points(bundle)), round);
   }
 }
 
 }  // namespace
 
-Rendered RenderBundles(const World& world, Sampler& sampler, const PartitionChoice& choice) {
+Rendered RenderBundles(const World& world, Sampler& sampler, const PartitionChoice& choice,
+                       const Round& round) {
   Rendered rendered;
   if (world.rank == world.size - 1)
-    rendered.messages = Serve(world, choice, rendered.raster);
+    rendered.messages = Serve(world, choice, round, rendered.raster);
   else
-    rendered.messages = TraceOnDemand(world, sampler, choice);
-  rendered.counts = sampler.counts();
+    rendered.messages = TraceOnDemand(world, sampler, choice, round);
   return rendered;
 }
 

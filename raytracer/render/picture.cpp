@@ -4,7 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+
+#include "raytracer/image/ramp.h"
 
 namespace stipple::raytracer {
 namespace {
@@ -18,6 +21,26 @@ std::uint8_t ToByte(std::int64_t sum, std::int64_t rays) {
   const std::int64_t full = rays * kFixedOne;
   const std::int64_t bounded = std::clamp<std::int64_t>(sum, 0, full);
   return static_cast<std::uint8_t>((bounded * 255 + full / 2) / full);
+}
+
+double MeanOf(std::int64_t sum, std::int64_t rays) {
+  return static_cast<double>(sum) / (static_cast<double>(kFixedOne) * static_cast<double>(rays));
+}
+
+/// All rays of each pixel: those of its point, or of its four corners.
+std::vector<RayResult> PixelsOf(const Raster& raster, ImageSize image, Samples samples) {
+  const int width = RasterOf(image, samples).width;
+  const int reach = samples.corners() ? 1 : 0;
+  std::vector<RayResult> pixels;
+  pixels.reserve(Index(0, image.height, image.width));
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      RayResult pixel;
+      for (int dy = 0; dy <= reach; ++dy)
+        for (int dx = 0; dx <= reach; ++dx) Add(raster[Index(x + dx, y + dy, width)], pixel);
+      pixels.push_back(pixel);
+    }
+  return pixels;
 }
 
 struct PixelCost {
@@ -48,27 +71,35 @@ std::vector<PixelCost> CostsOf(const Raster& raster, ImageSize image, Samples sa
 }  // namespace
 
 Image PictureOf(const Raster& raster, ImageSize image, Samples samples) {
-  const int width = RasterOf(image, samples).width;
-  const std::int64_t rays = samples.corners() ? 4 : samples.per_pixel;
   Image picture{image, {}};
   picture.rgb.reserve(3 * Index(0, image.height, image.width));
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) {
-      FixedColor sum;
-      const int reach = samples.corners() ? 1 : 0;  // a pixel's points: itself, or its four corners
-      for (int dy = 0; dy <= reach; ++dy) {
-        for (int dx = 0; dx <= reach; ++dx) {
-          const FixedColor& color = raster[Index(x + dx, y + dy, width)].color;
-          sum.red += color.red;
-          sum.green += color.green;
-          sum.blue += color.blue;
-        }
-      }
-      for (const std::int64_t component : {sum.red, sum.green, sum.blue})
-        picture.rgb.push_back(ToByte(component, rays));
-    }
-  }
+  for (const RayResult& pixel : PixelsOf(raster, image, samples))
+    for (const std::int64_t sum : {pixel.color.red, pixel.color.green, pixel.color.blue})
+      picture.rgb.push_back(ToByte(sum, pixel.rays));
   return picture;
+}
+
+LinearImage LinearPictureOf(const Raster& raster, ImageSize image, Samples samples) {
+  LinearImage picture{image, {}};
+  picture.rgb.reserve(3 * Index(0, image.height, image.width));
+  for (const RayResult& pixel : PixelsOf(raster, image, samples))
+    for (const std::int64_t sum : {pixel.color.red, pixel.color.green, pixel.color.blue})
+      picture.rgb.push_back(static_cast<float>(MeanOf(sum, pixel.rays)));
+  return picture;
+}
+
+LossBound LossOf(const Raster& raster, ImageSize image, Samples samples) {
+  LossBound bound;
+  const std::vector<RayResult> pixels = PixelsOf(raster, image, samples);
+  for (const RayResult& pixel : pixels) {
+    // What makes a component brighter than white is not seen.
+    const std::int64_t darkest = std::min({pixel.color.red, pixel.color.green, pixel.color.blue});
+    const double room = 1 - std::clamp(MeanOf(darkest, pixel.rays), 0.0, 1.0);
+    const double lost = std::min(MeanOf(pixel.lost, pixel.rays), room);
+    bound.mean += lost / static_cast<double>(pixels.size());
+    bound.worst = std::max(bound.worst, lost);
+  }
+  return bound;
 }
 
 Image CostImageOf(const Raster& raster, ImageSize image, Samples samples) {
@@ -77,9 +108,11 @@ Image CostImageOf(const Raster& raster, ImageSize image, Samples samples) {
   for (const PixelCost& cost : costs) dearest = std::max(dearest, cost.work);
   Image picture{image, {}};
   picture.rgb.reserve(3 * costs.size());
-  for (const PixelCost& cost : costs)
-    picture.rgb.insert(picture.rgb.end(), 3,
-                       static_cast<std::uint8_t>((cost.work * 255 + dearest / 2) / dearest));
+  for (const PixelCost& cost : costs) {
+    const Rgb color =
+        ColorAt(kViridis, std::sqrt(static_cast<double>(cost.work) / static_cast<double>(dearest)));
+    picture.rgb.insert(picture.rgb.end(), color.begin(), color.end());
+  }
   return picture;
 }
 

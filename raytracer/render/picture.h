@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "raytracer/image/png_file.h"
+#include "raytracer/image/image.h"
 #include "raytracer/render/render.h"
 
 namespace stipple::raytracer {
@@ -13,8 +13,21 @@ namespace stipple::raytracer {
 /// The mean of the rays of each pixel, in integers throughout.
 Image PictureOf(const Raster& raster, ImageSize image, Samples samples);
 
-/// Grey by work, white for the dearest pixel. With corner rays a corner's work goes to the pixel
-/// below and to the right of it, or the last one in the row or column.
+/// The same means, not limited to what a byte can hold.
+LinearImage LinearPictureOf(const Raster& raster, ImageSize image, Samples samples);
+
+/// How much brighter a component of a pixel could be, of 1, if every ray had been followed to depth
+/// kDeepest and none been cut.
+struct LossBound {
+  double mean = 0;   // over the pixels
+  double worst = 0;  // of any pixel
+};
+LossBound LossOf(const Raster& raster, ImageSize image, Samples samples);
+
+/// From dark violet to yellow (viridis) by the root of a pixel's work, yellow for the dearest: in
+/// proportion to the work itself most pixels of most scenes would be alike. With corner rays a
+/// corner's work goes to the pixel below and to the right of it, or the last one in the row or
+/// column.
 Image CostImageOf(const Raster& raster, ImageSize image, Samples samples);
 
 /// CSV with the columns x,y,work,object,in_shadow,depth, one row per pixel. Object is the object's

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "raytracer/render/render.h"
 
+#include <algorithm>
+
 #include "raytracer/partition/find_row.h"
 #include "raytracer/render/marks.h"
+#include "raytracer/render/progress.h"
 
 namespace stipple::raytracer {
 namespace {
@@ -11,13 +14,16 @@ constexpr int kShareTag = 1;
 constexpr std::size_t kPointsPerRecord =
     4096;  // counters of a static share are recorded this often
 
-[[gnu::noinline]] std::vector<RayResult> TraceShare(Sampler& sampler,
-                                                    const std::vector<RasterPoint>& points) {
+[[gnu::noinline]] std::vector<RayResult> TraceShare(const World& world, Sampler& sampler,
+                                                    const std::vector<RasterPoint>& points,
+                                                    const Round& round) {
   std::vector<RayResult> results;
   results.reserve(points.size());
+  Progress progress(points.size(), world.rank == 0);
   for (const RasterPoint point : points) {
-    results.push_back(sampler.Sample(point));
+    results.push_back(round.Trace(sampler, point));
     if (results.size() % kPointsPerRecord == 0) RecordCounts(sampler.counts());
+    progress.Advance(1);
   }
   RecordCounts(sampler.counts());
   return results;
@@ -25,14 +31,14 @@ constexpr std::size_t kPointsPerRecord =
 
 /// Rank 0 computes which points each share has; only results travel.
 [[gnu::noinline]] Raster AssembleShares(const World& world, RayPartition partition,
-                                        const PartitionChoice& choice,
+                                        const PartitionChoice& choice, const Round& round,
                                         const std::vector<RayResult>& own) {
   Mark(Moment::kAssembleBegins);
   const ResultType type;
   Raster raster(PointCount(choice.raster));
-  Place(partition(choice, 0, world.size), own, raster);
+  Place(round.Of(partition(choice, 0, world.size)), own, raster);
   for (int rank = 1; rank < world.size; ++rank) {
-    const std::vector<RasterPoint> points = partition(choice, rank, world.size);
+    const std::vector<RasterPoint> points = round.Of(partition(choice, rank, world.size));
     std::vector<RayResult> results(points.size());
     MPI_Recv(results.data(), static_cast<int>(results.size()), type.get(), rank, kShareTag,
              world.comm, MPI_STATUS_IGNORE);
@@ -41,7 +47,38 @@ constexpr std::size_t kPointsPerRecord =
   return raster;
 }
 
+Rendered RenderRound(const World& world, Sampler& sampler, std::string_view partition,
+                     const PartitionChoice& choice, const Round& round) {
+  const RayPartitionEntry& row = FindRow(kRayPartitions, partition);
+  if (row.host && world.size > 1) return RenderBundles(world, sampler, choice, round);
+  return RenderShares(world, sampler, row.points, choice, round);
+}
+
+/// What the rank that has the picture decides, on every rank; false when nothing is left to do.
+bool ChooseDoubling(const World& world, int assembling, const Raster& raster, ImageSize image,
+                    double tolerance, Doubling& doubling) {
+  if (world.rank == assembling) doubling = WorthDoubling(raster, image, tolerance);
+  doubling.resize(PointCount(image));
+  MPI_Bcast(doubling.data(), static_cast<int>(doubling.size()), MPI_BYTE, assembling, world.comm);
+  return std::ranges::any_of(doubling, [](std::uint8_t rays) { return rays != 0; });
+}
+
 }  // namespace
+
+std::vector<RasterPoint> Round::Of(std::vector<RasterPoint> points) const {
+  if (!doubling_.empty())
+    std::erase_if(points, [this](RasterPoint point) { return doubling_[point] == 0; });
+  return points;
+}
+
+std::size_t Round::Count(std::size_t points) const {
+  return points - static_cast<std::size_t>(std::ranges::count(doubling_, 0));
+}
+
+RayResult Round::Trace(Sampler& sampler, RasterPoint point) const {
+  if (doubling_.empty()) return sampler.Sample(point);
+  return sampler.SampleAgain(point, 1 << doubling_[point]);
+}
 
 ResultType::ResultType() {
   MPI_Type_contiguous(sizeof(RayResult), MPI_BYTE, &type_);
@@ -60,28 +97,36 @@ int AssemblingRank(const World& world, std::string_view partition) {
 }
 
 Rendered RenderShares(const World& world, Sampler& sampler, RayPartition partition,
-                      const PartitionChoice& choice) {
+                      const PartitionChoice& choice, const Round& round) {
   Rendered rendered;
   const std::vector<RayResult> results =
-      TraceShare(sampler, partition(choice, world.rank, world.size));
+      TraceShare(world, sampler, round.Of(partition(choice, world.rank, world.size)), round);
   if (world.rank == 0) {
-    rendered.raster = AssembleShares(world, partition, choice, results);
+    rendered.raster = AssembleShares(world, partition, choice, round, results);
   } else {
     const ResultType type;
     MPI_Send(results.data(), static_cast<int>(results.size()), type.get(), 0, kShareTag,
              world.comm);
     rendered.messages = 1;
   }
-  rendered.counts = sampler.counts();
   return rendered;
 }
 
 Rendered Render(const World& world, Sampler& sampler, std::string_view partition,
-                const PartitionChoice& choice) {
-  const RayPartitionEntry& row = FindRow(kRayPartitions, partition);
+                const PartitionChoice& choice, Samples samples) {
   Mark(Moment::kRenderBegins);
-  if (row.host && world.size > 1) return RenderBundles(world, sampler, choice);
-  return RenderShares(world, sampler, row.points, choice);
+  Rendered rendered = RenderRound(world, sampler, partition, choice, {});
+  Doubling doubling;
+  while (samples.adaptive &&
+         ChooseDoubling(world, AssemblingRank(world, partition), rendered.raster, choice.raster,
+                        samples.tolerance, doubling)) {
+    const Rendered more = RenderRound(world, sampler, partition, choice, Round(doubling));
+    rendered.messages += more.messages;
+    for (std::size_t point = 0; point < more.raster.size(); ++point)
+      if (doubling[point] != 0) Add(more.raster[point], rendered.raster[point]);
+  }
+  rendered.counts = sampler.counts();
+  return rendered;
 }
 
 }  // namespace stipple::raytracer

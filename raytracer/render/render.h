@@ -5,9 +5,11 @@
 
 #include <cstdint>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "raytracer/partition/ray_partition.h"
+#include "raytracer/render/adaptive.h"
 #include "raytracer/render/sampling.h"
 #include "raytracer/render/world.h"
 
@@ -25,17 +27,36 @@ struct Rendered {
 /// The rank that receives all results: the host if there is one, else rank 0.
 int AssemblingRank(const World& world, std::string_view partition);
 
-/// Traces this rank's share of the picture and assembles all shares; every rank calls it.
+/// Traces this rank's share of the picture and assembles all shares; every rank calls it. With
+/// adaptive sampling in rounds, each divided like the first.
 Rendered Render(const World& world, Sampler& sampler, std::string_view partition,
-                const PartitionChoice& choice);
+                const PartitionChoice& choice, Samples samples);
 
-// The two ways to do it; Render chooses.
+/// Which points are traced, and which of their rays: in the first round all points, then those
+/// that adaptive sampling chose.
+class Round {
+ public:
+  Round() = default;
+  explicit Round(Doubling doubling) : doubling_(std::move(doubling)) {}
+
+  /// Of these points those that are traced, in their order.
+  std::vector<RasterPoint> Of(std::vector<RasterPoint> points) const;
+  /// How many there are of a raster's `points`.
+  std::size_t Count(std::size_t points) const;
+  RayResult Trace(Sampler& sampler, RasterPoint point) const;
+
+ private:
+  Doubling doubling_;  // empty: the first round
+};
+
+// The two ways to do one round; Render chooses.
 
 /// Every rank knows its points beforehand; rank 0 collects.
 Rendered RenderShares(const World& world, Sampler& sampler, RayPartition partition,
-                      const PartitionChoice& choice);
+                      const PartitionChoice& choice, const Round& round);
 /// The last rank hands out bundles on demand and collects; the others trace.
-Rendered RenderBundles(const World& world, Sampler& sampler, const PartitionChoice& choice);
+Rendered RenderBundles(const World& world, Sampler& sampler, const PartitionChoice& choice,
+                       const Round& round);
 
 /// Puts results where their points are.
 void Place(const std::vector<RasterPoint>& points, const std::vector<RayResult>& results,

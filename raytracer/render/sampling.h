@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which rays make a pixel: one through each corner, or some inside.
+// Which rays make a pixel: one through each corner, some inside, or as many as it needs.
 #ifndef STIPPLE_RAYTRACER_RENDER_SAMPLING_H
 #define STIPPLE_RAYTRACER_RENDER_SAMPLING_H
 
@@ -14,10 +14,11 @@ namespace stipple::raytracer {
 /// Rays per pixel; 0: a ray through each corner, shared by the four pixels around it, as SPD
 /// compares ray tracers.
 struct Samples {
-  int per_pixel = 0;  // of adaptive sampling: the most
-  bool adaptive = false;
+  int per_pixel = 0;
+  bool adaptive = false;    // as many as the pixel needs: adaptive.h
+  double tolerance = 1e-3;  // of adaptive sampling
 
-  bool corners() const { return per_pixel == 0; }
+  bool corners() const { return per_pixel == 0 && !adaptive; }
 };
 
 /// The points that partitions divide: pixels, or the corners of pixels.
@@ -28,8 +29,10 @@ class Sampler {
  public:
   virtual ~Sampler() = default;
 
-  /// All rays through one point.
+  /// All rays through one point; of adaptive sampling the first.
   virtual RayResult Sample(RasterPoint point) = 0;
+  /// Adaptive sampling: as many rays as the point has had already; only what these found.
+  virtual RayResult SampleAgain(RasterPoint, int /*rays*/) { return {}; }
   virtual const RayCounts& counts() const = 0;
 };
 

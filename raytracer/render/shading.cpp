@@ -36,7 +36,8 @@ Shading<Real>::Shading(const Scene& scene) : background(Converted<Real>(scene.ba
                          real(m.specular) * scale, real(m.shine), real(m.specular),
                          real(m.transmission),
                          // Opaque objects have index 0 in SPD's files; as glass they are like air.
-                         m.refraction > 0 ? real(m.refraction) : Real{1}, m.priority});
+                         m.refraction > 0 ? real(m.refraction) : Real{1}, m.priority,
+                         m.specular > 0 || m.transmission > 0});
   for (const Light& light : scene.lights)
     lights.push_back(
         {Converted<Real>(light.position), Converted<Real>(light.color), real(light.radius)});

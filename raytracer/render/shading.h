@@ -34,6 +34,7 @@ struct ShadedMaterial {
   Real specular, transmission;
   Real refraction;  // index inside
   int priority;
+  bool sends_on;  // reflects or lets through
 };
 
 template <class Real>

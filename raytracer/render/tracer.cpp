@@ -2,6 +2,7 @@
 #include "raytracer/render/tracer.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -15,12 +16,6 @@ namespace {
 /// Brighter than white by this much is as bright as a ray gets: sums of many rays stay far from
 /// 2^63.
 constexpr double kBrightest = 1024;
-
-std::int64_t ToFixed(double value) {
-  const double bounded = std::clamp(value, -kBrightest, kBrightest);
-  return static_cast<std::int64_t>(bounded * static_cast<double>(kFixedOne) +
-                                   std::copysign(0.5, bounded));
-}
 
 template <class Real>
 void Deposit(Vec<Real> color, FixedColor& sum) {
@@ -42,6 +37,31 @@ Vec<Real> Reflected(Vec<Real> direction, Vec<Real> normal) {
 }
 
 }  // namespace
+
+std::int64_t ToFixed(double value) {
+  // Adding a number whose last binary digit is 1 rounds to a whole number, which then stands in the
+  // sum's last digits: no conversion, no branch on the sign.
+  constexpr double kWhole = 0x1.8p52;
+  static_assert(kBrightest * static_cast<double>(kFixedOne) < 0x1p51);
+  const double bounded = std::max(-kBrightest, std::min(kBrightest, value));
+  return std::bit_cast<std::int64_t>(bounded * static_cast<double>(kFixedOne) + kWhole) -
+         std::bit_cast<std::int64_t>(kWhole);
+}
+
+void Add(const RayResult& more, RayResult& sum) {
+  if (sum.rays == 0) {
+    sum = more;
+    return;
+  }
+  sum.color.red += more.color.red;
+  sum.color.green += more.color.green;
+  sum.color.blue += more.color.blue;
+  sum.lost += more.lost;
+  sum.squares += more.squares;
+  sum.work += more.work;
+  sum.rays = static_cast<std::uint16_t>(sum.rays + more.rays);
+  sum.depth = std::max(sum.depth, more.depth);
+}
 
 template <class Real, Rules kRules>
 Tracer<Real, kRules>::Tracer(const Scene& scene, const Model<Real>& model,
@@ -91,6 +111,7 @@ template <class Real, Rules kRules>
     result.object = hit.object;
     result.in_shadow = in_shadow ? 1 : 0;
   }
+  if (!surface.material->sends_on) return;
   if (leg.depth < max_depth_)
     Follow(leg, surface, result);
   else
@@ -125,7 +146,7 @@ typename Tracer<Real, kRules>::Surface Tracer<Real, kRules>::SurfaceAt(const Ray
   surface.leaving = Dot(ray.direction, normals.face) > 0;
   surface.face = surface.leaving ? -normals.face : normals.face;
   surface.normal = surface.leaving ? -normals.shading : normals.shading;
-  surface.mirrored = Reflected(ray.direction, surface.normal);
+  if (surface.material->sends_on) surface.mirrored = Reflected(ray.direction, surface.normal);
   surface.offset = SurfaceOffset(surface.point, hit.t, rounding_);
   return surface;
 }
@@ -150,7 +171,7 @@ template <class Real, Rules kRules>
       continue;
     }
     sum = sum + material.diffuse * light.color * (facing * inverse);
-    if (!(material.highlight > 0)) continue;
+    if (!(material.specular > 0)) continue;
     const Real mirrored = Dot(surface.mirrored, direction);
     if (mirrored > 0)
       sum = sum + light.color *

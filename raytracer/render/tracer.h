@@ -66,9 +66,15 @@ struct RayResult {
   std::uint16_t rays = 0;            // eye rays
   std::uint8_t in_shadow = 0;        // 1 if something stands between that hit and a light it faces
   std::uint8_t depth = 0;            // of the deepest ray
-  float spread = 0;                  // adaptive sampling: estimated squared error (sampling.h)
+  std::int64_t squares = 0;          // adaptive sampling: of the rays' components, as `color`
 };
-static_assert(sizeof(RayResult) == 48);
+static_assert(sizeof(RayResult) == 56);
+
+/// What `sum` found and, after that, `more`.
+void Add(const RayResult& more, RayResult& sum);
+
+/// In units of 2^-32, rounded.
+std::int64_t ToFixed(double value);
 
 template <class Real, Rules kRules>
 class Tracer {
@@ -101,7 +107,7 @@ class Tracer {
     Vec<Real> point;
     Vec<Real> face;      // unit normal of the geometry, towards the ray's origin
     Vec<Real> normal;    // unit normal for shading, on the same side
-    Vec<Real> mirrored;  // direction of the ray reflected about `normal`
+    Vec<Real> mirrored;  // direction of the reflected ray, if the material sends any on
     Real offset;         // distance that new rays keep from the surface
     bool leaving;        // the ray came from inside
     const Material* material;
@@ -127,7 +133,7 @@ class Tracer {
   std::array<double, kDeepest + 1> largest_colors_;
   int max_depth_;
   Real min_contribution_;
-  Real rounding_;
+  Real rounding_;  // of the kernel's distances
   RayCounts counts_;
 };
 

@@ -66,6 +66,9 @@ Scene Balls(int size) {
   scene.lights = {{{4, 3, 2}}, {{1, -4, 4}}, {{-3, 1, 5}}};
   scene.materials = {{{1, 0.75, 0.33}, 0.8, 0, kMatteShine, 0, 1},
                      {{1, 0.9, 0.7}, 0.5, 0.5, 3.0827, 0, 1}};
+  const auto objects = static_cast<std::size_t>(BallsObjects(size));
+  scene.shapes.objects.reserve(objects);
+  scene.shapes.spheres.reserve(objects);
   const double f = kFloorHalf;
   const Vec3 floor[] = {{f, f, -0.5}, {-f, f, -0.5}, {-f, -f, -0.5}, {f, -f, -0.5}};
   scene.shapes.AddPolygon(floor, {}, 0);

@@ -17,8 +17,9 @@
 namespace stipple::raytracer {
 namespace {
 
-constexpr std::size_t kReadBytes = std::size_t{1} << 26;  // at once; some systems refuse 2^31
-constexpr std::uint64_t kFactor = 0x9e3779b97f4a7c15;     // odd, so that it has an inverse
+constexpr std::size_t kMostRead = std::size_t{1} << 26;      // at once; some systems refuse 2^31
+constexpr std::size_t kHashedAtOnce = std::size_t{1} << 18;  // a multiple of Hash's block
+constexpr std::uint64_t kFactor = 0x9e3779b97f4a7c15;        // odd, so that it has an inverse
 
 /// An open file, closed at the end.
 struct Descriptor {
@@ -35,28 +36,54 @@ struct Descriptor {
                ? static_cast<std::size_t>(status.st_size)
                : 0;
   }
+  /// Reads until `place` is full or the file ends. Returns the bytes read, or what went wrong in
+  /// errno and nothing.
+  std::optional<std::size_t> Read(std::span<char> place) const {
+    std::size_t size = 0;
+    while (size < place.size()) {
+      const ssize_t count =
+          read(number, place.data() + size, std::min(place.size() - size, kMostRead));
+      if (count == 0) break;
+      if (count > 0) size += static_cast<std::size_t>(count);
+      if (count < 0 && errno != EINTR) return std::nullopt;
+    }
+    return size;
+  }
+
   int number;
 };
 
 }  // namespace
 
-std::string ReadFile(const std::string& path) {
+FileText::FileText(const std::string& path) {
   const Descriptor file(path);
-  std::string text;
+  if (file.number < 0)
+    throw InputError(path, 0, fmt::format("cannot be read: {}", std::strerror(errno)));
   // One byte more than the file has, so that its end is met without growing.
-  text.resize(file.number >= 0 ? file.Size() + 1 : 1);
-  std::size_t size = 0;
+  std::size_t room = file.Size() + 1;
   for (;;) {
-    if (size == text.size()) text.resize(size + kReadBytes);
-    const ssize_t count =
-        read(file.number, text.data() + size, std::min(text.size() - size, kReadBytes));
-    if (count == 0) break;
-    if (count > 0) size += static_cast<std::size_t>(count);
-    if (count < 0 && errno != EINTR)
-      throw InputError(path, 0, fmt::format("cannot be read: {}", std::strerror(errno)));
+    auto more = std::make_unique_for_overwrite<char[]>(room);
+    std::copy_n(text_.get(), size_, more.get());
+    text_ = std::move(more);
+    const std::optional<std::size_t> count = file.Read({text_.get() + size_, room - size_});
+    if (!count) throw InputError(path, 0, fmt::format("cannot be read: {}", std::strerror(errno)));
+    size_ += *count;
+    if (size_ < room) return;
+    room = 2 * room + kHashedAtOnce;
   }
-  text.resize(size);
-  return text;
+}
+
+std::optional<Hash> Hash::OfFile(const std::string& path, std::size_t least) {
+  const Descriptor file(path);
+  if (file.number < 0 || file.Size() < std::max(least, std::size_t{1})) return std::nullopt;
+  const auto part = std::make_unique_for_overwrite<char[]>(kHashedAtOnce);
+  Hash hash;
+  for (;;) {
+    const std::optional<std::size_t> count = file.Read({part.get(), kHashedAtOnce});
+    if (!count) return std::nullopt;
+    hash.Add(std::as_bytes(std::span(part.get(), *count)));
+    if (*count < kHashedAtOnce) return hash;
+  }
 }
 
 MappedFile::MappedFile(const std::string& path) {

@@ -6,15 +6,29 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace stipple::raytracer {
 
 /// All of a file, which may be a pipe too. It is read, not mapped: a file that somebody shortens
-/// meanwhile then gives a message and not a signal. Errors: InputError.
-std::string ReadFile(const std::string& path);
+/// meanwhile then gives a message and not a signal.
+class FileText {
+ public:
+  FileText() = default;
+  /// Errors: InputError.
+  explicit FileText(const std::string& path);
+
+  std::string_view view() const { return {text_.get(), size_}; }
+
+ private:
+  std::unique_ptr<char[]> text_;
+  std::size_t size_ = 0;
+};
 
 /// A file's bytes, read-only, in the page cache that all processes of a computer share.
 class MappedFile {
@@ -45,6 +59,10 @@ class Hash {
   /// Bytes are taken in blocks of 64; the last block of each call is filled up with zeros.
   void Add(std::span<const std::byte> bytes);
   std::uint64_t Value() const;
+
+  /// Of a file, read once and not kept. Nothing if it is not of the regular kind, which can be read
+  /// again, or has fewer bytes than `least`.
+  static std::optional<Hash> OfFile(const std::string& path, std::size_t least);
 
  private:
   using Lanes = std::array<std::uint64_t, 8>;

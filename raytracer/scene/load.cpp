@@ -52,12 +52,12 @@ View CameraOf(const SceneChoice& choice, const View& own) {
 
 }  // namespace
 
-std::string TextOf(const SceneChoice& choice) {
-  if (FindGenerator(choice.scene) != nullptr) return {};
+bool IsFile(const SceneChoice& choice) {
+  if (FindGenerator(choice.scene) != nullptr) return false;
   if (choice.size >= 0)
     throw UsageError(
         fmt::format("--scene-size {}: the file {} has the size it has", choice.size, choice.scene));
-  return ReadFile(choice.scene);
+  return true;
 }
 
 Scene SceneFrom(const SceneChoice& choice, std::string_view text) {
@@ -75,7 +75,8 @@ View ViewOf(const SceneChoice& choice, const View& own) {
 }
 
 Scene LoadScene(const SceneChoice& choice) {
-  Scene scene = SceneFrom(choice, TextOf(choice));
+  const FileText text = IsFile(choice) ? FileText(choice.scene) : FileText();
+  Scene scene = SceneFrom(choice, text.view());
   scene.view = ViewOf(choice, scene.view);
   return scene;
 }

@@ -26,9 +26,9 @@ Scene LoadScene(const SceneChoice& choice);
 
 // Its steps, for who can spare some.
 
-/// The text of the scene's file; empty if the scene is generated.
-std::string TextOf(const SceneChoice& choice);
-/// With the scene's own view.
+/// Is the scene a file, and not generated? Errors: UsageError if a size was chosen for a file.
+bool IsFile(const SceneChoice& choice);
+/// With the scene's own view. `text`: of the file.
 Scene SceneFrom(const SceneChoice& choice, std::string_view text);
 /// The chosen one; `own`: the scene's.
 View ViewOf(const SceneChoice& choice, const View& own);

@@ -12,8 +12,8 @@
 namespace stipple::raytracer {
 namespace {
 
-/// What a shape and its share of the hierarchy take in a model, by kind; from above, as the models
-/// of the four scenes at all sizes have them.
+/// What a shape, its share of the hierarchy and of what is there only while both are made take, by
+/// kind. From above: 8 % more than the peak of tree 18, 54 % more than that of balls 6.
 constexpr std::uint64_t kModelBytes[] = {110, 190, 170, 400, 500};
 
 double Megabytes(std::uint64_t bytes) { return static_cast<double>(bytes) * 1e-6; }
@@ -49,10 +49,11 @@ void RequireMemory(const Shapes& shapes, std::uint64_t limit) {
   const std::uint64_t needed = BytesToBuild(shapes);
   const std::uint64_t allowed = limit > 0 ? limit : AvailableBytes();
   if (needed <= allowed) return;
-  throw UsageError(fmt::format(
-      "the scene does not fit: {} objects take about {} MB while they are made ready, {} {} MB",
-      shapes.objects.size(), needed / 1000000, limit > 0 ? "--memory-limit is" : "this node has",
-      allowed / 1000000));
+  throw UsageError(
+      fmt::format("the scene does not fit: {} objects take up to {:.1f} MB while they are made "
+                  "ready, {} {:.1f} MB",
+                  shapes.objects.size(), Megabytes(needed),
+                  limit > 0 ? "--memory-limit is" : "this node has", Megabytes(allowed)));
 }
 
 }  // namespace stipple::raytracer

@@ -2,13 +2,23 @@
 // The Neutral File Format (Eric Haines, 1987): the whole of it, read by tokens, so that line breaks
 // mean nothing.
 //
+// clang-format off
 //   # comment                                to the end of the line
-//   v from x y z at x y z up x y z angle degrees hither d resolution w h       (parts in any order;
-//   hither may miss) b r g b                                  background l x y z [r g b] light f r
-//   g b Kd Ks shine T refraction         fill for the objects that follow; before the first: plain
-//   white s x y z radius                           sphere c base-x y z radius  apex-x y z radius
-//   cone or cylinder, without ends p n  x y z ...                           polygon, convex or not
+//   v from x y z at x y z up x y z angle degrees hither d resolution w h
+//                                            view; its parts in any order, hither may miss
+//   b r g b                                  background
+//   l x y z [r g b [radius]]                 light
+//   f r g b Kd Ks shine T refraction [priority]
+//                                            fill for the objects that follow; before the first: plain white
+//   s x y z radius                           sphere
+//   c base-x y z radius  apex-x y z radius   cone or cylinder, without ends
+//   p n  x y z ...                           polygon, convex or not
 //   pp n  x y z nx ny nz ...                 polygon with a normal at each vertex
+//   bezier  x y z ...                        bicubic Bezier patch of 16 control points
+// clang-format on
+//
+// Extensions, written only where a scene has them: `radius` of a light, `priority` of a fill,
+// `bezier`. What cannot be drawn is refused (check.h), never dropped.
 #ifndef STIPPLE_RAYTRACER_SCENE_NFF_H
 #define STIPPLE_RAYTRACER_SCENE_NFF_H
 
@@ -25,7 +35,7 @@ Scene ReadNff(const std::string& path);
 /// `name` stands in messages where a file's name would.
 Scene ParseNff(std::string_view text, std::string_view name);
 
-/// Only the view of a file, which may hold nothing else.
+/// Only the view of a file, which may hold nothing else; what follows the view is not read.
 View ReadNffView(const std::string& path);
 
 /// Writes every number with as many digits as it takes to read the same number again.

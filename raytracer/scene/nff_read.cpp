@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <array>
+#include <unordered_map>
+
 #include "raytracer/errors.h"
+#include "raytracer/scene/check.h"
 #include "raytracer/scene/file_bytes.h"
 #include "raytracer/scene/nff.h"
 #include "raytracer/scene/nff_tokens.h"
@@ -10,98 +14,105 @@ namespace stipple::raytracer {
 namespace {
 
 constexpr long kMaxResolution = 16384;
-constexpr double kThinnest = 1e-12;  // of a polygon's extent: what is thinner has no direction
+constexpr long kMostVertices = 1L << 28;
+constexpr long kHighestPriority = 1000;
+
+struct MaterialHash {
+  std::size_t operator()(const Material& m) const {
+    std::size_t hash = static_cast<std::size_t>(m.priority);
+    for (const double value : {m.color.x, m.color.y, m.color.z, m.diffuse, m.specular, m.shine,
+                               m.transmission, m.refraction})
+      hash = hash * 31 + std::hash<double>()(value);
+    return hash;
+  }
+};
 
 class NffReader {
  public:
   NffReader(std::string_view text, std::string_view name) : tokens_(text, name) {}
 
   Scene Read() {
-    struct Entity {
-      std::string_view token;
-      void (NffReader::*read)();
-    };
-    static constexpr Entity kEntities[] = {
-        {"v", &NffReader::ReadView},   {"b", &NffReader::ReadBackground},
-        {"l", &NffReader::ReadLight},  {"f", &NffReader::ReadFill},
-        {"s", &NffReader::ReadSphere}, {"c", &NffReader::ReadCone},
-        {"p", &NffReader::ReadPlain},  {"pp", &NffReader::ReadPatch}};
-    while (!tokens_.AtEnd()) {
-      entity_line_ = tokens_.line();
-      const std::string_view token = tokens_.Take();
-      const Entity* known = nullptr;
-      for (const Entity& entity : kEntities)
-        if (entity.token == token) known = &entity;
-      if (known == nullptr)
-        tokens_.Fail(entity_line_, fmt::format("unknown entity '{}'; known are v b l f s c p pp",
-                                               Printable(token)));
-      (this->*known->read)();
-    }
-    if (!view_seen_) tokens_.Fail("no view: an entity 'v' should say from where the scene is seen");
+    while (!tokens_.AtEnd()) ReadEntity();
+    if (view_line_ == 0) FailWithoutView();
     return std::move(scene_);
   }
 
+  View ReadUpToView() {
+    while (!tokens_.AtEnd() && view_line_ == 0) ReadEntity();
+    if (view_line_ == 0) FailWithoutView();
+    return scene_.view;
+  }
+
  private:
-  static std::string Printable(std::string_view token) {
-    std::string shown;
-    for (const char c : token.substr(0, 20)) shown += c >= ' ' && c <= '~' ? c : '?';
-    return shown;
+  struct Entity {
+    std::string_view token;
+    void (NffReader::*read)();
+  };
+
+  void ReadEntity() {
+    static constexpr Entity kEntities[] = {
+        {"s", &NffReader::ReadSphere}, {"c", &NffReader::ReadCone},
+        {"p", &NffReader::ReadPlain},  {"pp", &NffReader::ReadWithNormals},
+        {"f", &NffReader::ReadFill},   {"bezier", &NffReader::ReadPatch},
+        {"v", &NffReader::ReadView},   {"b", &NffReader::ReadBackground},
+        {"l", &NffReader::ReadLight}};
+    entity_line_ = tokens_.line();
+    const std::string_view token = tokens_.Take();
+    for (const Entity& entity : kEntities)
+      if (entity.token == token) return (this->*entity.read)();
+    FailEntity(fmt::format("unknown entity '{}'; known are v b l f s c p pp bezier", Shown(token)));
   }
 
   void ReadView() {
-    View& view = scene_.view;
+    if (view_line_ > 0)
+      FailEntity(fmt::format("a second view; the first stands in line {}", view_line_));
+    struct Part {
+      std::string_view name;
+      bool seen = false;
+    };
+    Part parts[] = {{"from"}, {"at"}, {"up"}, {"angle"}, {"resolution"}};
+    for (std::string_view part = tokens_.Peek(); ReadViewPart(part); part = tokens_.Peek())
+      for (Part& needed : parts) needed.seen = needed.seen || needed.name == part;
     std::string missing;
-    bool from = false, at = false, up = false, angle = false, resolution = false;
-    for (bool more = true; more;) {
-      const std::string_view part = tokens_.Peek();
-      const auto next = [&](bool& seen) {
-        tokens_.Take();
-        seen = true;
-      };
-      bool hither = false;
-      if (part == "from") {
-        next(from);
-        view.from = tokens_.Vector("'from'");
-      } else if (part == "at") {
-        next(at);
-        view.at = tokens_.Vector("'at'");
-      } else if (part == "up") {
-        next(up);
-        view.up = tokens_.Vector("'up'");
-      } else if (part == "angle") {
-        next(angle);
-        view.angle_deg = tokens_.Number("'angle'");
-      } else if (part == "hither") {
-        next(hither);
-        view.hither = tokens_.Number("'hither'");
-      } else if (part == "resolution") {
-        next(resolution);
-        view.resolution.width = static_cast<int>(tokens_.Count("'resolution'", 1, kMaxResolution));
-        view.resolution.height = static_cast<int>(tokens_.Count("'resolution'", 1, kMaxResolution));
-      } else {
-        more = false;
-      }
-    }
-    for (const auto& [seen, name] :
-         {std::pair{from, "from"}, std::pair{at, "at"}, std::pair{up, "up"},
-          std::pair{angle, "angle"}, std::pair{resolution, "resolution"}})
-      if (!seen) missing += fmt::format("{}'{}'", missing.empty() ? "" : ", ", name);
+    for (const Part& part : parts)
+      if (!part.seen) missing += fmt::format("{}'{}'", missing.empty() ? "" : ", ", part.name);
     if (!missing.empty()) FailEntity("the view lacks " + missing);
-    CheckView(view);
-    view_seen_ = true;
+    Check(ProblemOf(scene_.view));
+    view_line_ = entity_line_;
   }
 
-  void CheckView(const View& view) const {
-    const Vec3 forward = view.at - view.from;
-    if (Dot(forward, forward) == 0) FailEntity("the view's 'from' and 'at' are the same point");
-    const double sine =
-        Length(Cross(Normalized(forward), view.up)) / std::max(Length(view.up), 1e-300);
-    if (!(sine > 1e-9)) FailEntity("the view's 'up' is zero or points along the line of sight");
-    if (!(view.angle_deg > 0 && view.angle_deg < 180))
-      FailEntity("the view's 'angle' should be above 0 and below 180 degrees");
+  /// False if the token is no part of a view.
+  bool ReadViewPart(std::string_view part) {
+    View& view = scene_.view;
+    const auto size = [&] {
+      return static_cast<int>(tokens_.Count("'resolution'", 1, kMaxResolution));
+    };
+    const auto is = [&](std::string_view name) { return part == name && (tokens_.Take(), true); };
+    if (is("from"))
+      view.from = tokens_.Vector("'from'");
+    else if (is("at"))
+      view.at = tokens_.Vector("'at'");
+    else if (is("up"))
+      view.up = tokens_.Vector("'up'");
+    else if (is("angle"))
+      view.angle_deg = tokens_.Number("'angle'");
+    else if (is("hither"))
+      view.hither = tokens_.Number("'hither'");
+    else if (is("resolution"))
+      view.resolution.width = size(), view.resolution.height = size();
+    else
+      return false;
+    return true;
   }
 
-  void ReadBackground() { scene_.background = tokens_.Vector("the background's colour"); }
+  void ReadBackground() {
+    if (background_line_ > 0)
+      FailEntity(fmt::format("a second background; the first stands in line {}", background_line_));
+    background_line_ = entity_line_;
+    scene_.background = tokens_.Vector("the background's colour");
+    if (!ProblemOf(Light{{}, scene_.background}).empty())
+      FailEntity("the background's colour should be from 0 to 1000");
+  }
 
   void ReadLight() {
     Light light;
@@ -109,7 +120,9 @@ class NffReader {
     if (tokens_.NumberFollows()) {
       light.color = tokens_.Vector("the light's colour");
       light.colored = true;
+      if (tokens_.NumberFollows()) light.radius = tokens_.Number("the light's radius");
     }
+    Check(ProblemOf(light));
     scene_.lights.push_back(light);
   }
 
@@ -121,15 +134,16 @@ class NffReader {
     m.shine = tokens_.Number("the fill's shine");
     m.transmission = tokens_.Number("the fill's T");
     m.refraction = tokens_.Number("the fill's index of refraction");
-    if (m.transmission > 0 && !(m.refraction > 0))
-      FailEntity("a fill that lets light through needs an index of refraction above 0");
-    scene_.materials.push_back(m);
+    if (tokens_.NumberFollows())
+      m.priority = static_cast<int>(tokens_.Count("the fill's priority", 0, kHighestPriority));
+    Check(ProblemOf(m));
+    UseMaterial(m);
   }
 
   void ReadSphere() {
     const Vec3 center = tokens_.Vector("the sphere's centre");
     const double radius = tokens_.Number("the sphere's radius");
-    if (radius == 0) FailEntity("sphere of radius 0");
+    Check(ProblemOfSphere(center, radius));
     scene_.shapes.AddSphere(center, radius, CurrentMaterial());
   }
 
@@ -138,18 +152,16 @@ class NffReader {
     const double base_radius = tokens_.Number("the cone's base radius");
     const Vec3 apex = tokens_.Vector("the cone's apex");
     const double apex_radius = tokens_.Number("the cone's apex radius");
-    if (!(Dot(apex - base, apex - base) > 0)) FailEntity("the cone's base and apex coincide");
-    if (base_radius == 0 && apex_radius == 0) FailEntity("cone of radius 0 at both ends");
-    if (base_radius * apex_radius < 0) FailEntity("the cone's radii have different signs");
+    Check(ProblemOfCone(base, base_radius, apex, apex_radius));
     scene_.shapes.AddCone(base, base_radius, apex, apex_radius, CurrentMaterial());
   }
 
   void ReadPlain() { ReadPolygon(false); }
-  void ReadPatch() { ReadPolygon(true); }
+  void ReadWithNormals() { ReadPolygon(true); }
 
   void ReadPolygon(bool with_normals) {
     const long line = tokens_.line();
-    const long count = tokens_.Count("the polygon's number of vertices", 3, 1L << 28);
+    const long count = tokens_.Count("the polygon's number of vertices", 3, kMostVertices);
     const auto numbers = static_cast<std::size_t>(count) * (with_normals ? 6 : 3);
     if (numbers > tokens_.NumbersLeftAtMost())
       tokens_.Fail(line, fmt::format("polygon of {} vertices, but the rest of the file is too "
@@ -161,7 +173,7 @@ class NffReader {
       vertices_.push_back(tokens_.Vector("the polygon's vertex"));
       if (with_normals) normals_.push_back(ReadNormal());
     }
-    CheckArea();
+    Check(ProblemOfPolygon(vertices_));
     scene_.shapes.AddPolygon(vertices_, normals_, CurrentMaterial());
   }
 
@@ -174,26 +186,42 @@ class NffReader {
     return std::abs(Length(normal) - 1) < 1e-5 ? normal : Normalized(normal);
   }
 
-  void CheckArea() const {
-    double extent = 0;
-    for (const Vec3& vertex : vertices_) extent = std::max(extent, MaxNorm(vertex - vertices_[0]));
-    if (!(Length(NewellNormal(vertices_)) > kThinnest * extent * extent))
-      FailEntity("polygon of zero area");
+  void ReadPatch() {
+    std::array<Vec3, 16> control;
+    for (Vec3& point : control) point = tokens_.Vector("the patch's control point");
+    Check(ProblemOfPatch(control));
+    scene_.shapes.AddPatch(control, CurrentMaterial());
+  }
+
+  /// Files that repeat a fill before each object have as many materials as differ.
+  void UseMaterial(const Material& material) {
+    const auto next = static_cast<std::uint32_t>(scene_.materials.size());
+    const auto [place, is_new] = numbers_.try_emplace(material, next);
+    if (is_new) scene_.materials.push_back(material);
+    material_ = place->second;
   }
 
   std::uint32_t CurrentMaterial() {
-    if (scene_.materials.empty()) scene_.materials.push_back({});
-    return static_cast<std::uint32_t>(scene_.materials.size() - 1);
+    if (scene_.materials.empty()) UseMaterial({});
+    return material_;
   }
 
+  void Check(std::string_view problem) const {
+    if (!problem.empty()) FailEntity(problem);
+  }
   [[noreturn]] void FailEntity(std::string_view problem) const {
     tokens_.Fail(entity_line_, problem);
+  }
+  [[noreturn]] void FailWithoutView() const {
+    tokens_.Fail("no view: an entity 'v' should say from where the scene is seen");
   }
 
   NffTokens tokens_;
   long entity_line_ = 1;
+  long view_line_ = 0, background_line_ = 0;  // 0: none yet
   Scene scene_;
-  bool view_seen_ = false;
+  std::unordered_map<Material, std::uint32_t, MaterialHash> numbers_;
+  std::uint32_t material_ = 0;  // of the objects that follow
   std::vector<Vec3> vertices_, normals_;
 };
 
@@ -203,8 +231,11 @@ Scene ParseNff(std::string_view text, std::string_view name) {
   return NffReader(text, name).Read();
 }
 
-Scene ReadNff(const std::string& path) { return ParseNff(ReadFile(path), path); }
+Scene ReadNff(const std::string& path) { return ParseNff(FileText(path).view(), path); }
 
-View ReadNffView(const std::string& path) { return ReadNff(path).view; }
+View ReadNffView(const std::string& path) {
+  const FileText text(path);
+  return NffReader(text.view(), path).ReadUpToView();
+}
 
 }  // namespace stipple::raytracer

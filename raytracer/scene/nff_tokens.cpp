@@ -19,14 +19,20 @@ constexpr std::size_t kShownCharacters = 40;
 
 bool IsBlank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
-/// A token as a message may show it: not endless, and without bytes that disturb a terminal.
+bool EndsToken(char c) { return IsBlank(c) || c == '#'; }
+
+}  // namespace
+
 std::string Shown(std::string_view token) {
   std::string shown;
   for (const char c : token.substr(0, kShownCharacters)) shown += c >= ' ' && c <= '~' ? c : '?';
   return token.size() > kShownCharacters ? shown + "..." : shown;
 }
 
-}  // namespace
+NffTokens::NffTokens(std::string_view text, std::string_view name) : text_(text), name_(name) {
+  if (text_.starts_with("\xef\xbb\xbf")) text_.remove_prefix(3);
+  Skip();
+}
 
 void NffTokens::Fail(long line, std::string_view problem) const {
   throw InputError(name_, line, problem);
@@ -35,9 +41,9 @@ void NffTokens::Fail(long line, std::string_view problem) const {
 void NffTokens::Skip() {
   std::size_t next = position_;
   long line = line_;
-  while (next < text_.size() && (IsBlank(text_[next]) || text_[next] == '#')) {
+  while (next < text_.size() && EndsToken(text_[next])) {
     if (text_[next] == '#') {
-      while (next < text_.size() && text_[next] != '\n') ++next;
+      while (next < text_.size() && text_[next] != '\n' && text_[next] != '\r') ++next;
       continue;
     }
     if (text_[next] == '\n') ++line;
@@ -50,7 +56,7 @@ void NffTokens::Skip() {
 
 std::string_view NffTokens::Peek() const {
   std::size_t end = position_;
-  while (end < text_.size() && !IsBlank(text_[end]) && text_[end] != '#') ++end;
+  while (end < text_.size() && !EndsToken(text_[end])) ++end;
   return text_.substr(position_, end - position_);
 }
 
@@ -68,6 +74,24 @@ bool NffTokens::NumberFollows() const {
 }
 
 double NffTokens::Number(std::string_view what) {
+  const char* const begin = text_.data() + position_;
+  const char* const last = text_.data() + text_.size();
+  double value = 0;
+  const auto [end, error] = std::from_chars(begin, last, value);
+  // The usual number is done; NaN is not, since it compares with nothing.
+  if (error == std::errc() && (end == last || EndsToken(*end)) && std::abs(value) <= kLargest)
+      [[likely]]
+    position_ += static_cast<std::size_t>(end - begin);
+  else {
+    value = UnusualNumber(what);
+    position_ += Peek().size();
+  }
+  Skip();
+  return value;
+}
+
+/// With a plus sign, too small for a double, or none that can be used.
+double NffTokens::UnusualNumber(std::string_view what) const {
   if (AtEnd()) Fail(fmt::format("the file ends where {} should be", what));
   const std::string_view token = Peek();
   const std::string_view digits = token.substr(token.starts_with('+') ? 1 : 0);
@@ -81,7 +105,6 @@ double NffTokens::Number(std::string_view what) {
     value = std::strtod(std::string(digits).c_str(), nullptr);
   if (!std::isfinite(value)) Fail(fmt::format("{} is not a finite number: {}", what, Shown(token)));
   if (std::abs(value) > kLargest) Fail(fmt::format("{} is too large: {}", what, Shown(token)));
-  Take();
   return value;
 }
 

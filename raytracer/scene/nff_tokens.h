@@ -4,6 +4,7 @@
 #define STIPPLE_RAYTRACER_SCENE_NFF_TOKENS_H
 
 #include <cstddef>
+#include <string>
 #include <string_view>
 
 #include "raytracer/geometry/vec.h"
@@ -12,7 +13,9 @@ namespace stipple::raytracer {
 
 class NffTokens {
  public:
-  NffTokens(std::string_view text, std::string_view name) : text_(text), name_(name) { Skip(); }
+  /// Both are looked at as long as this lives. A byte order mark at the beginning is none of the
+  /// text's words.
+  NffTokens(std::string_view text, std::string_view name);
 
   bool AtEnd() const { return position_ == text_.size(); }
   /// Line of the next token; at the end, the last line.
@@ -38,12 +41,16 @@ class NffTokens {
 
  private:
   void Skip();  // blanks and comments
+  double UnusualNumber(std::string_view what) const;
 
   std::string_view text_;
   std::string_view name_;
   std::size_t position_ = 0;
   long line_ = 1;
 };
+
+/// A token as a message may show it: not endless, and without bytes that disturb a terminal.
+std::string Shown(std::string_view token);
 
 }  // namespace stipple::raytracer
 

@@ -58,6 +58,10 @@ Scene Rings(int size) {
   scene.lights = {{{3, eye_y, 3}}, {{-4, eye_y, 1}}, {{2, eye_y, -4}}};
   scene.materials = {{{1, 1, 1}, 1, 0, kMatteShine, 0, 0}};
   for (const Vec3& color : kColors) scene.materials.push_back({color, 0.5, 0.2, 3.0827, 0, 0});
+  const auto objects = static_cast<std::size_t>(RingsObjects(size));
+  scene.shapes.objects.reserve(objects);
+  scene.shapes.cones.reserve(objects / 2);
+  scene.shapes.spheres.reserve(objects / 2);
   AddWall(scene.shapes, size);
   for (int level = 1; level <= size; ++level)
     for (int row = 0; row < level; ++row)

@@ -21,21 +21,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A text of fewer bytes cannot hold that many objects: "s 0 0 0 1" is one.
-constexpr std::size_t kLeastText = 10 * kLeastCachedObjects;
-
 constexpr std::string_view kEnding = ".scene";
 constexpr std::string_view kUnfinished = ".part";  // behind a name that mkstemp made
 constexpr auto kAbandoned = std::chrono::hours(24);
 
-/// The hash of a whole file, whose header holds 0 where the hash will be.
-std::uint64_t HashOfFile(PackedHeader header, std::span<const std::byte> body) {
-  header.hash = 0;
-  std::byte first[kHeaderBytes] = {};
-  std::memcpy(first, &header, sizeof header);
+/// The hash of a whole file, as if its header had 0 where the hash is.
+std::uint64_t HashOfFile(std::span<const std::byte> bytes) {
+  std::byte first[kHeaderBytes];
+  std::ranges::copy(bytes.first(kHeaderBytes), first);
+  std::memset(first + offsetof(PackedHeader, hash), 0, sizeof(PackedHeader::hash));
   Hash hash;
   hash.Add(first);
-  hash.Add(body);
+  hash.Add(bytes.subspan(kHeaderBytes));
   return hash.Value();
 }
 
@@ -148,14 +145,13 @@ std::string CacheFolder() {
 }
 
 template <class Real>
-SceneCache<Real>::SceneCache(std::string_view text, std::string_view choices) {
+SceneCache<Real>::SceneCache(const Hash& text, std::string_view choices) {
   const std::string folder = CacheFolder();
-  if (text.size() < kLeastText || folder.empty()) return;
-  const std::uint64_t depends_on[] = {LayoutOf<Real>(), text.size()};
+  if (folder.empty()) return;
+  const std::uint64_t depends_on[] = {LayoutOf<Real>(), text.Value()};
   Hash hash;
   hash.Add(std::as_bytes(std::span(depends_on)));
   hash.Add(std::as_bytes(std::span(choices)));
-  hash.Add(std::as_bytes(std::span(text)));
   key_ = hash.Value();
   path_ = fmt::format("{}/{:016x}{}", folder, key_, kEnding);
 }
@@ -167,8 +163,7 @@ std::optional<CachedScene<Real>> SceneCache<Real>::Open(std::string& note) const
   const std::span<const std::byte> bytes = cached.file.bytes();
   if (bytes.empty()) return std::nullopt;
   std::optional<BuiltScene<Real>> built = Unpack<Real>(bytes);
-  if (!built || header.key != key_ ||
-      header.hash != HashOfFile(header, bytes.subspan(kHeaderBytes))) {
+  if (!built || header.key != key_ || header.hash != HashOfFile(bytes)) {
     note = fmt::format("{}: damaged; it is made anew", path_);
     return std::nullopt;
   }

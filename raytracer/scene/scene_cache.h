@@ -9,6 +9,7 @@
 #ifndef STIPPLE_RAYTRACER_SCENE_SCENE_CACHE_H
 #define STIPPLE_RAYTRACER_SCENE_SCENE_CACHE_H
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -21,6 +22,8 @@ namespace stipple::raytracer {
 
 /// Scenes of fewer objects are not kept: reading them takes less than a tenth of a second.
 inline constexpr std::uint64_t kLeastCachedObjects = 100'000;
+/// A file of fewer bytes cannot hold that many: "s 0 0 0 1" is one of the shortest.
+inline constexpr std::size_t kLeastCachedText = 10 * kLeastCachedObjects;
 /// What the folder holds at most; the files used longest ago go first.
 inline constexpr std::uint64_t kCacheBytes = std::uint64_t{8} << 30;
 
@@ -41,7 +44,7 @@ template <class Real>
 class SceneCache {
  public:
   /// `text`: of the whole file. `choices`: in words, all else that the model depends on.
-  SceneCache(std::string_view text, std::string_view choices);
+  SceneCache(const Hash& text, std::string_view choices);
 
   /// Nothing if it was not kept or is damaged, which is said in `note` and mended by keeping it
   /// anew.
@@ -51,7 +54,7 @@ class SceneCache {
   /// scene is small or cannot be kept: a full disk or a folder that cannot be written is no error.
   std::optional<CachedScene<Real>> Keep(BuiltScene<Real>& built) const;
 
-  /// Where the scene is or would be kept; empty if nowhere.
+  /// Where the scene is or would be kept; empty if there is no folder.
   const std::string& path() const { return path_; }
 
  private:

@@ -29,15 +29,14 @@ class Leader {
 
   /// Finds the scene in the cache, or reads or generates it.
   void Load() {
-    std::string text = TextOf(choice_);
-    if (!text.empty() && hierarchy_ == Hierarchy::kOfModel)
-      cache_.emplace(text, fmt::format("object-limit {}", choice_.object_limit));
-    std::string note;
-    if (cache_) kept_ = cache_->Open(note);
-    if (!note.empty()) fmt::print(stderr, "raytracer: {}\n", note);
+    if (IsFile(choice_)) {
+      FindKept();
+      if (!kept_) ReadScene();
+    } else {
+      scene_ = SceneFrom(choice_, {});
+    }
+    view_ = ViewOf(choice_, kept_ ? kept_->built.scene.view : scene_.view);
     found_ = kept_.has_value();
-    if (!found_) scene_ = SceneFrom(choice_, text);
-    view_ = ViewOf(choice_, found_ ? kept_->built.scene.view : scene_.view);
   }
 
   /// Builds the model if it was not found, and keeps a large one.
@@ -68,6 +67,31 @@ class Leader {
   std::string FoundIn() const { return found_ ? kept_->path : ""; }
 
  private:
+  /// In words, all that a model depends on beside its text.
+  std::string Choices() const {
+    return fmt::format("object-limit {} hierarchy {}", choice_.object_limit,
+                       static_cast<int>(hierarchy_));
+  }
+
+  void FindKept() {
+    const std::optional<Hash> text = Hash::OfFile(choice_.scene, kLeastCachedText);
+    if (!text) return;
+    std::string note;
+    kept_ = SceneCache<Real>(*text, Choices()).Open(note);
+    if (!note.empty()) fmt::print(stderr, "raytracer: {}\n", note);
+  }
+
+  /// The text is hashed again: somebody may have written to the file meanwhile.
+  void ReadScene() {
+    const FileText text(choice_.scene);
+    if (text.view().size() >= kLeastCachedText) {
+      Hash hash;
+      hash.Add(std::as_bytes(std::span(text.view())));
+      cache_.emplace(hash, Choices());
+    }
+    scene_ = SceneFrom(choice_, text.view());
+  }
+
   const SceneChoice& choice_;
   Hierarchy hierarchy_;
   std::optional<SceneCache<Real>> cache_;

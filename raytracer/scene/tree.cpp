@@ -56,6 +56,10 @@ Scene Tree(int size) {
                   {{-30, 40, 10}}, {{50, 25, 20}},  {{-10, -60, 30}}};
   scene.materials = {{{0.2, 0.7, 0.2}, 1, 0, kMatteShine, 0, 0},
                      {{0.55, 0.4, 0.2}, 1, 0, kMatteShine, 0, 0}};
+  const auto objects = static_cast<std::size_t>(TreeObjects(size));
+  scene.shapes.objects.reserve(objects);
+  scene.shapes.cones.reserve(objects / 2);
+  scene.shapes.spheres.reserve(objects / 2);
   const double f = kFieldHalf;
   const Vec3 field[] = {{f, f, 0}, {-f, f, 0}, {-f, -f, 0}, {f, -f, 0}};
   scene.shapes.AddPolygon(field, {}, 0);

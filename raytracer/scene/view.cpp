@@ -9,17 +9,18 @@ namespace stipple::raytracer {
 
 template <class Real>
 Camera<Real>::Camera(const View& view, ImageSize raster) : from_(Converted<Real>(view.from)) {
-  const Vec<Real> forward = Normalized(Converted<Real>(view.at) - from_);
-  const Vec<Real> right = Normalized(Cross(forward, Converted<Real>(view.up)));
-  const Vec<Real> down = Cross(forward, right);
-  const Real half_height =
-      std::tan(static_cast<Real>(view.angle_deg) * std::numbers::pi_v<Real> / 360);
-  const Real pitch =
-      raster.height > 1 ? 2 * half_height / static_cast<Real>(raster.height - 1) : 2 * half_height;
-  right_ = right * pitch;
-  down_ = down * pitch;
-  corner_ = forward - right_ * (static_cast<Real>(raster.width - 1) / 2) -
-            down_ * (static_cast<Real>(raster.height - 1) / 2);
+  const Vec<Wide> forward = Normalized(Converted<Wide>(view.at) - Converted<Wide>(view.from));
+  const Vec<Wide> right = Normalized(Cross(forward, Converted<Wide>(view.up)));
+  const Vec<Wide> down = Cross(forward, right);
+  const Wide half_height =
+      std::tan(static_cast<Wide>(view.angle_deg) * std::numbers::pi_v<Wide> / 360);
+  const Wide pitch =
+      raster.height > 1 ? 2 * half_height / static_cast<Wide>(raster.height - 1) : 2 * half_height;
+  const Vec<Wide> column = right * pitch, row = down * pitch;
+  right_ = Rounded(column);
+  down_ = Rounded(row);
+  corner_ = Rounded(forward - column * (static_cast<Wide>(raster.width - 1) / 2) -
+                    row * (static_cast<Wide>(raster.height - 1) / 2));
 }
 
 template <class Real>

@@ -3,6 +3,8 @@
 #ifndef STIPPLE_RAYTRACER_SCENE_VIEW_H
 #define STIPPLE_RAYTRACER_SCENE_VIEW_H
 
+#include <type_traits>
+
 #include "raytracer/geometry/vec.h"
 
 namespace stipple::raytracer {
@@ -34,6 +36,13 @@ class Camera {
   Ray<Real> RayThrough(Real x, Real y) const;
 
  private:
+  /// The frame is computed in double at least: in float an eye that is far away and looks at what
+  /// is near it would see no direction.
+  using Wide = std::conditional_t<(sizeof(Real) < sizeof(double)), double, Real>;
+  static Vec<Real> Rounded(Vec<Wide> v) {
+    return {static_cast<Real>(v.x), static_cast<Real>(v.y), static_cast<Real>(v.z)};
+  }
+
   Vec<Real> from_;
   Vec<Real> corner_;  // direction through (0, 0)
   Vec<Real> right_;   // one column further

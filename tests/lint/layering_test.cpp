@@ -43,6 +43,7 @@ const std::vector<PartRule> kRules = {
     {"runtime/mpi", {kFormat, "runtime/core"}, {"mpi.h"}},
     {"raytracer", {kUser}, {"mpi.h", "png.h", "fmt/", "nlohmann/", "CLI/"}},
     {"raytracer/geometry", {"raytracer", kUser}, {"embree", "hwy/"}},
+    {"raytracer/image", {"raytracer", kUser}, {"png.h", "OpenEXR/", "fmt/"}},
     {"raytracer/simulate", {"raytracer", kUser}, {"simgrid/", "smpi/", "mpi.h"}},
     {"analysis/trace", {kFormat}, {"fmt/", "zstd.h", "elfutils/", "dwarf.h"}},
     {"analysis/stats", {kFormat, "analysis/trace"}, {"fmt/"}},
@@ -118,7 +119,7 @@ bool Allowed(const PartRule& rule, const std::string& target) {
 /// have plain names and are only on the path of plugin/gcc, so they need no row.
 bool IsLibrary(const std::string& name) {
   static const std::regex kPattern(
-      "(mpi\\.h|png\\.h|fmt/.*|nlohmann/.*|CLI/.*|vtk.*|llvm/.*|clang/.*|embree.*|hwy/.*|"
+      "(mpi\\.h|png\\.h|OpenEXR/.*|fmt/.*|nlohmann/.*|CLI/.*|vtk.*|llvm/.*|clang/.*|embree.*|hwy/.*|"
       "simgrid/.*|smpi/.*|otf2/.*|zstd\\.h|elfutils/.*|libunwind.*|gcc-plugin\\.h)");
   return std::regex_match(name, kPattern);
 }

@@ -12,6 +12,7 @@
 
 #include "brute_force_kernel.h"
 #include "raytracer/errors.h"
+#include "raytracer/image/compare.h"
 #include "raytracer/render/picture.h"
 #include "raytracer/render/sampling.h"
 #include "raytracer/scene/generate.h"
@@ -98,10 +99,9 @@ TEST(Plan, FactsAreThoseOfTheScene) {
   EXPECT_EQ(facts.smallest, 0.25);
   EXPECT_DOUBLE_EQ(facts.reach, std::sqrt(60.0 * 60 + 8 * 8));  // from the eye to a corner
   EXPECT_TRUE(facts.mirrors);
-  EXPECT_TRUE(facts.transmits);
-  EXPECT_FALSE(facts.extended);
+  EXPECT_EQ(facts.rules, Rules::kTransmitting);
   scene.lights.emplace_back().radius = 1;
-  EXPECT_TRUE(Facts(scene).extended);
+  EXPECT_EQ(Facts(scene).rules, Rules::kExtended);
   EXPECT_FALSE(Facts(Tree(2)).mirrors);
 }
 
@@ -153,12 +153,12 @@ TEST(Plan, OneRayIsDeepEnoughWhereNothingSendsItOn) {
   EXPECT_EQ(DepthFor(Facts(Balls(1)), 5), 5);
   const Drawn one = Draw<double>(Tree(5), {64, 64}, {.max_depth = 1});
   const Drawn five = Draw<double>(Tree(5), {64, 64}, {.max_depth = 5});
-  EXPECT_TRUE(Compare(one.image, five.image).Identical());
+  EXPECT_TRUE(Compare(Linear(one.image), Linear(five.image)).Identical());
   EXPECT_EQ(one.counts.Rays(), five.counts.Rays());
 }
 
 double Decibels(const Image& picture, const Image& truth) {
-  return 20 * std::log10(255 / Compare(picture, truth).rms);
+  return -20 * std::log10(Compare(Linear(picture), Linear(truth)).rmse);
 }
 
 // --min-contribution 0.02, which the plan recommends for pictures.
@@ -184,7 +184,7 @@ TEST(Plan, AHierarchyPaysFromThreeObjectsOn) {
     const Model<double> model = BuildModel<double>(std::move(scene.shapes));
     const Drawn without =
         Draw(*MakeSampler<double>(scene, model, all, {}, {32, 32}, {}), {32, 32}, {});
-    EXPECT_TRUE(Compare(with.image, without.image).Identical()) << objects;
+    EXPECT_TRUE(Compare(Linear(with.image), Linear(without.image)).Identical()) << objects;
     EXPECT_LT(with.counts.tests.primitive_tests, without.counts.tests.primitive_tests) << objects;
   }
 }

@@ -40,8 +40,20 @@ check 3 --partition bundles --bundle 49 --select modulo
 check 5 --partition bundles --bundle 7 --select random --seed 3
 check 5 --partition bundles --bundle 100000
 
+# Adaptive sampling decides from the whole picture, so that it too depends on no partition.
+scene="--scene balls --scene-size 2 --resolution 24x20 --samples adaptive --tolerance 0.003"
+"$raytracer" $scene --output serial.png --cost-map serial.csv --stats serial.json > serial.txt
+eye_rays=$(sed -n 's/.*"eye_rays": \([0-9]*\).*/\1/p' serial.json)
+test "$eye_rays" -gt $((24 * 20 * 9)) -a "$eye_rays" -lt $((24 * 20 * 200)) || { echo "adaptive: $eye_rays rays"; exit 1; }
+check 3 --partition tiled --tile blocks
+check 4 --partition scattered
+check 3 --partition bundles --bundle 50
+check 4 --partition bundles --bundle 7 --select random
+
 "$raytracer" --compare serial.png serial.png | grep -q '^identical'
 "$raytracer" $scene --max-depth 1 --output shallow.png > shallow.txt
-if "$raytracer" --compare serial.png shallow.png > compare.txt; then echo "a difference went unseen"; exit 1; fi
-grep -q '^different' compare.txt
+grep -q 'could have added at most' shallow.txt
+if "$raytracer" --compare serial.png shallow.png --output where.png > compare.txt; then echo "a difference went unseen"; exit 1; fi
+grep -q '^different: .* dB' compare.txt
+test -s where.png
 echo "same picture everywhere"

@@ -38,11 +38,16 @@ Shapes MakeQuadric(Quadric quadric, WideVec center, WideVec axis) {
 template <class Real>
 using Intersection = std::function<Real(const Ray<Real>&)>;
 
+/// Of the only shape.
 template <class Real>
-Intersection<Real> Naive(const Model<Real>& model) {
-  if (model.cones.empty())
-    return [&](const Ray<Real>& ray) { return rejected::NaiveSphere(model.SphereAt(0), ray); };
-  return [&](const Ray<Real>& ray) { return rejected::NaiveCone(model.ConeAt(0), ray); };
+Intersection<Real> Naive(const Shapes& shapes) {
+  if (shapes.cones.empty())
+    return [sphere = Converted<Real>(shapes.spheres[0])](const Ray<Real>& ray) {
+      return rejected::NaiveSphere(sphere, ray);
+    };
+  return [cone = Converted<Real>(shapes.cones[0])](const Ray<Real>& ray) {
+    return rejected::NaiveCone(cone, ray);
+  };
 }
 
 template <class Real>
@@ -74,12 +79,12 @@ DistanceRates TryDistance(Quadric quadric, std::string_view method, double dista
   int wrong = 0;
   for (int i = 0; i < kPlacements; ++i) {
     const WideVec center = random.Direction() * static_cast<long double>(distance);
-    const TurnedAxes across(Normalized(center));
+    const Axes across(Normalized(center));
     const Shapes shapes = InReal(MakeQuadric(quadric, center, random.Direction()), Real{});
     const Model<Real> model = BuildModel<Real>(Shapes(shapes));
     const Model<long double> true_model = BuildModel<long double>(Shapes(shapes));
-    const auto intersect = method == "naive" ? Naive(model) : OfKernel(method, model);
-    const auto true_hit = Naive(true_model), true_t = OfKernel("scalar", true_model);
+    const auto intersect = method == "naive" ? Naive<Real>(shapes) : OfKernel(method, model);
+    const auto true_hit = Naive<long double>(shapes), true_t = OfKernel("scalar", true_model);
     for (int j = 0; j < rays / kPlacements; ++j) {
       const WideVec target =
           across.At({random.Between(-1.5L, 1.5L), random.Between(-1.5L, 1.5L), 0});
@@ -121,7 +126,7 @@ long double PlaneDistance(const Triangle<double>& triangle, WideVec origin, Wide
 /// A sliver, its corners rounded to `Real`.
 template <class Real>
 std::array<Vec3, 3> Sliver(double width, Random& random) {
-  const TurnedAxes frame(random.Direction());
+  const Axes frame(random.Direction());
   const auto w = static_cast<long double>(width);
   const auto corner = [&](WideVec local) {
     return Rounded<double>(Rounded<Real>(frame.At(local)));

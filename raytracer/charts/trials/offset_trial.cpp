@@ -23,7 +23,7 @@ Vec<Real> StartRelative(Vec<Real> point, Vec<Real> normal, Real t) {
 
 /// Where a shape of unit size stands in the scene.
 struct Placement {
-  TurnedAxes frame;
+  Axes frame;
   WideVec center;
   long double size;
 
@@ -136,7 +136,7 @@ OffsetRates TryOffset(const OffsetRule<Real>& rule, OffsetScene scene, int rays)
   for (int i = 0; i < kPlacements; ++i) {
     const auto size = static_cast<long double>(scene.size);
     const WideVec center = random.Direction() * (size * static_cast<long double>(scene.distance));
-    const Placement placement{TurnedAxes(random.Direction()), center, size};
+    const Placement placement{Axes(random.Direction()), center, size};
     TryPlacement(rule, scene.shape, placement, rays / kPlacements, random, sums);
   }
   const int traced = rays / kPlacements * kPlacements;

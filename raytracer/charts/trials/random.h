@@ -48,10 +48,10 @@ Vec<To> Rounded(Vec<From> v) {
 }
 
 /// Three directions at right angles.
-struct TurnedAxes {
+struct Axes {
   WideVec x, y, z;
 
-  explicit TurnedAxes(WideVec up) : z(up) {
+  explicit Axes(WideVec up) : z(up) {
     x = Normalized(Cross(std::abs(z.x) < 0.5L ? WideVec{1, 0, 0} : WideVec{0, 1, 0}, z));
     y = Cross(z, x);
   }

@@ -182,6 +182,42 @@ TEST(Bvh, BoxesContainTheirObjectsAfterRounding) {
   }
 }
 
+TEST(Bvh, NoHitIsLostFarAwayOrAtAnySize) {
+  const Scene balls = Balls(2);
+  for (const double offset : {0.0, 1e5, 1e6})
+    for (const double scale : {0x1p-10, 1.0, 0x1p20}) {
+      const auto moved = [&](Vec3 p) { return (p + Vec3{offset, -offset, offset}) * scale; };
+      Shapes shapes;
+      for (const Sphere<double>& sphere : balls.shapes.spheres)
+        shapes.AddSphere(moved(sphere.center), sphere.radius * scale, 0);
+      const Model<double> model = BuildModel<double>(Shapes(shapes));
+      const auto kernel = MakeKernel("bvh", model);
+      TestCounts tests;
+      int hits = 0;
+      for (const Ray<double>& at_home : RandomRays(2000, 1)) {
+        const Ray<double> ray{moved(at_home.origin), at_home.direction};
+        const Hit<double> expected = BruteForce(shapes, ray);
+        const Hit<double> hit = kernel->Intersect(ray, tests);
+        ASSERT_EQ(hit.object, expected.object) << offset << ' ' << scale;
+        ASSERT_EQ(hit.t, expected.t);
+        hits += hit.object != kNoObject ? 1 : 0;
+      }
+      EXPECT_GT(hits, 100);
+    }
+}
+
+TEST(Bvh, OneObjectIsAHierarchy) {
+  Shapes shapes;
+  shapes.AddSphere({1, 2, 3}, 1, 0);
+  const Model<double> model = BuildModel<double>(Shapes(shapes));
+  const auto kernel = MakeKernel("bvh", model);
+  TestCounts tests;
+  EXPECT_EQ(kernel->Intersect({{1, 2, 9}, {0, 0, -1}}, tests).t, 5);
+  EXPECT_TRUE(kernel->Occluded({{1, 2, 9}, {0, 0, -1}}, 6.0, tests));
+  EXPECT_FALSE(kernel->Occluded({{1, 2, 9}, {0, 0, -1}}, 5.0, tests));
+  EXPECT_EQ(kernel->Intersect({{1, 2, 9}, {0, 0, 1}}, tests).object, kNoObject);
+}
+
 TEST(Bvh, AnEmptySceneIsMissed) {
   Shapes shapes;
   const Model<double> model = BuildModel<double>(Shapes(shapes));

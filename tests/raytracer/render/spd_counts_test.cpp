@@ -3,25 +3,11 @@
 // they are the oracle.
 #include <gtest/gtest.h>
 
-#include "raytracer/render/sampling.h"
 #include "raytracer/scene/generate.h"
+#include "tests/raytracer/render/traced.h"
 
 namespace stipple::raytracer {
 namespace {
-
-/// A scene with all that traces it.
-struct Traced {
-  Traced(Scene with, ImageSize image, Samples samples, ShadingChoice shading = {})
-      : scene(std::move(with)),
-        model(BuildModel<double>(std::move(scene.shapes))),
-        kernel(MakeKernel("bvh", model)),
-        sampler(MakeSampler(scene, model, *kernel, shading, image, samples)) {}
-
-  Scene scene;
-  Model<double> model;
-  std::unique_ptr<Kernel<double>> kernel;
-  std::unique_ptr<Sampler> sampler;
-};
 
 RayCounts CountsOf(Scene scene, ImageSize image, Samples samples, ShadingChoice shading = {}) {
   const Traced traced(std::move(scene), image, samples, shading);

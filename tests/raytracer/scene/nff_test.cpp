@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "raytracer/scene/nff.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
+#include <numbers>
 #include <string>
 
 #include "raytracer/errors.h"
@@ -34,11 +37,11 @@ TEST(Nff, EveryEntityIsReadInAnyOrder) {
   EXPECT_EQ(scene.view.from, (Vec3{0, 0, 9}));
   EXPECT_EQ(scene.view.resolution, (ImageSize{16, 12}));
   EXPECT_EQ(scene.view.angle_deg, 30);
-  ASSERT_EQ(scene.lights.size(), 2U);
+  ASSERT_EQ(scene.lights.size(), 3U);
   EXPECT_FALSE(scene.lights[0].colored);
   EXPECT_EQ(scene.lights[1].color, (Vec3{1, 0.5, 0}));
   const Shapes& shapes = scene.shapes;
-  ASSERT_EQ(shapes.objects.size(), 8U);
+  ASSERT_EQ(shapes.objects.size(), 9U);
   ASSERT_EQ(shapes.spheres.size(), 2U);
   EXPECT_EQ(shapes.spheres[1].radius, -0.25);
   ASSERT_EQ(shapes.cones.size(), 2U);
@@ -73,6 +76,66 @@ TEST(Nff, WritingAndReadingGivesTheSameScene) {
     const std::string text = FormatNff(scene);
     EXPECT_EQ(FormatNff(ParseNff(text, "again")), text);
   }
+}
+
+TEST(Nff, ExtensionsAreReadAndWrittenOnlyWhereUsed) {
+  const Scene scene = EveryEntity();
+  EXPECT_EQ(scene.lights[0].radius, 0);
+  EXPECT_EQ(scene.lights[2].radius, 0.75);
+  EXPECT_EQ(scene.materials.back().priority, 2);
+  ASSERT_EQ(scene.shapes.patches.size(), 1U);
+  EXPECT_EQ(scene.shapes.patches[0].control[5], (Vec3{-2, 1, 2}));
+  const std::string text = FormatNff(scene);
+  EXPECT_NE(text.find("l 0 6 6 1 1 1 0.75\n"), std::string::npos);
+  EXPECT_NE(text.find("f 0.2 0.4 0.6 0 0.2 3 0.8 1.5 2\n"), std::string::npos);
+  EXPECT_NE(text.find("l 5 5 5\nl -5 5 5 1 0.5 0\n"), std::string::npos);
+  EXPECT_NE(text.find("f 1 0 0 0.5 0.5 10 0 0\n"), std::string::npos);
+}
+
+TEST(Nff, EqualFillsAreOneMaterial) {
+  std::string text = kView;
+  for (int i = 0; i < 100; ++i)
+    text += i % 2 == 0 ? "f 1 0 0 1 0 1 0 0\ns 0 0 0 1\n" : "f 0 1 0 1 0 1 0 0\ns 0 0 0 1\n";
+  const Scene scene = ParseNff(text, "fills");
+  EXPECT_EQ(scene.materials.size(), 2U);
+  EXPECT_EQ(scene.materials[scene.shapes.objects[99].material].color, (Vec3{0, 1, 0}));
+}
+
+// What editors of other systems leave: a byte order mark, line ends of two characters or of one.
+TEST(Nff, LineEndsOfAnyKindEndComments) {
+  const std::string body = "# eye\r\nv from 0 0 9 at 0 0 0 up 0 1 0 angle 45 resolution 8 8\r\n";
+  EXPECT_EQ(ParseNff("\xef\xbb\xbf" + body + "s 0 0 0 1\r\n", "dos").shapes.objects.size(), 1U);
+  const std::string mac = "# eye\rv from 0 0 9 at 0 0 0 up 0 1 0 angle 45 resolution 8 8\r";
+  EXPECT_EQ(ParseNff(mac + "# ball\rs 0 0 0 1", "mac").shapes.objects.size(), 1U);
+}
+
+// SPD's gears are such polygons: 144 corners, concave.
+TEST(Nff, AGearIsOnePolygon) {
+  std::string text = std::string(kView) + "p 144\n";
+  for (int i = 0; i < 144; ++i) {
+    const double angle = 2 * std::numbers::pi * i / 144, radius = i / 2 % 2 == 0 ? 1 : 0.8;
+    text +=
+        fmt::format("{:g} {:g} 0.5 # {}\n", radius * std::cos(angle), radius * std::sin(angle), i);
+  }
+  const Scene scene = ParseNff(text, "gear");
+  ASSERT_EQ(scene.shapes.polygons.size(), 1U);
+  EXPECT_EQ(scene.shapes.polygons[0].vertex_count, 144U);
+  EXPECT_NEAR(scene.shapes.polygons[0].normal.z, 1, 1e-12);
+}
+
+TEST(Nff, OutlinesMayTouchAndCrossThemselves) {
+  const Scene scene = ParseNff(std::string(kView) +
+                                   "p 4 0 0 0 3 3 0 3 0 0 0 1 0\n"                 // a crossing
+                                   "p 6 0 0 0 2 0 0 2 2 0 0 0 0 -1 1 0 -1 0 0\n",  // a touch
+                               "outlines");
+  EXPECT_EQ(scene.shapes.polygons.size(), 2U);
+}
+
+TEST(Nff, ACameraFileNeedsNothingButItsView) {
+  const std::string path = testing::TempDir() + "nff_view_" + std::to_string(getpid()) + ".nff";
+  std::ofstream(path) << "b 0 0 0\n" << kView << "what follows is not read";
+  EXPECT_EQ(ReadNffView(path).from, (Vec3{0, 0, 9}));
+  std::remove(path.c_str());
 }
 
 TEST(Nff, AFileIsWrittenAsFormatted) {
@@ -112,13 +175,30 @@ constexpr BadText kBadTexts[] = {
     {"pp 3 0 0 0 0 0 1\n1 0 0 0 0 0\n0 1 0 0 0 1\n", ":3: normal of length 0"},
     {"f 1 1 1 1 0 0 0.5 0\n", ":2: a fill that lets light through needs an index"},
     {"f 1 1 1 1 0\n", ":2: the file ends where the fill's shine should be"},
-    {"\n\nx 1 2 3\n", ":4: unknown entity 'x'; known are v b l f s c p pp"},
+    {"\n\nx 1 2 3\n", ":4: unknown entity 'x'; known are v b l f s c p pp bezier"},
     {"l 1 2 3 4\n", ":2: the file ends where the light's colour should be"},
-    {"v from 0 0 1\n", ":2: the view lacks 'at', 'up', 'angle', 'resolution'"},
-    {"v from 0 0 1 at 0 0 1 up 0 1 0 angle 45 resolution 8 8\n", ":2: the view's 'from' and 'at'"},
-    {"v from 0 0 1 at 0 0 0 up 0 0 2 angle 45 resolution 8 8\n", ":2: the view's 'up' is zero or"},
-    {"v from 0 0 1 at 0 0 0 up 0 1 0 angle 180 resolution 8 8\n", ":2: the view's 'angle'"},
-    {"v from 0 0 1 at 0 0 0 up 0 1 0 angle 45 resolution 0 8\n", ":2: 'resolution' is 0"},
+    {"v from 0 0 1 at 0 0 0 up 0 1 0 angle 45 resolution 8 8\n", ":2: a second view; the first"},
+    {"b 0 0 0\nb 1 1 1\n", ":3: a second background; the first stands in line 2"},
+    {"b 0 0 -1\n", ":2: the background's colour should be from 0 to 1000"},
+    {"l 0 0 0 1 1 1e9\n", ":2: the light's colour should be from 0 to 1000"},
+    {"l 0 0 0 1 1 1 -2\n", ":2: the light's radius should not be negative"},
+    {"f 1 1 1 1 1.5 10 0 0\n", ":2: the fill's Ks should be from 0 to 1"},
+    {"f 1 1 1 1 0 -1 0 0\n", ":2: the fill's shine should not be negative"},
+    {"f 1 1 1 1 0 1 -0.5 1\n", ":2: the fill's T should be from 0 to 1"},
+    {"f 1 1 1 1 0 1 0.5 1 2.5\n", ":2: the fill's priority should be a whole number"},
+    {"f 1 1 1 1 0 1 0.5 1 -1\n", ":2: the fill's priority is -1, it should be from 0 to 1000"},
+    {"s 1e300 0 0 1\n", ":2: the sphere's centre is too large: 1e300"},
+    {"s 0 0 0 1e-320\n", ":2: sphere too small for its place"},
+    {"s 1e10 0 0 1e-3\n", ":2: sphere too small for its place"},
+    {"c 0 0 0 1 0 0 1e-40 1\n", ":2: cone too short for its place"},
+    {"c 0 0 0 1e-40 0 0 1 0\n", ":2: cone too thin for its place"},
+    {"p 3 0 0 0 1e-100 0 0 0 1e-100 0\n", ":2: polygon too small for its place"},
+    {"p 4 0 0 0 1 1 0 1 0 0 0 1 0\n", ":2: polygon of zero area"},  // a bow-tie of equal wings
+    {"p 4 0 0 0 1 0 0 1 1 1 0 1 0\n", ":2: the polygon's corners do not lie in one plane"},
+    {"bezier 0 0 0 1 1 1\n", ":2: the file ends where the patch's control point should be"},
+    {"bezier 0 0 0 1 1 1 2 2 2 3 3 3 0 0 0 1 1 1 2 2 2 3 3 3 0 0 0 1 1 1 2 2 2 3 3 3 0 0 0 1 1 1 "
+     "2 2 2 3 3 3\n",
+     ":2: patch of zero area"},
     {"\x7f\x01\xff", ":2: unknown entity '?\?\?'"},
 };
 
@@ -126,6 +206,23 @@ TEST(Nff, WhatIsWrongIsSaidWithItsLine) {
   for (const BadText& bad : kBadTexts)
     EXPECT_EQ(ProblemOf(std::string(kView) + bad.text).find(std::string("x.nff") + bad.problem), 0U)
         << bad.text << ProblemOf(std::string(kView) + bad.text);
+}
+
+constexpr BadText kBadViews[] = {
+    {"v from 0 0 1\n", ":1: the view lacks 'at', 'up', 'angle', 'resolution'"},
+    {"v from 0 0 1 at 0 0 1 up 0 1 0 angle 45 resolution 8 8\n", ":1: the view's 'from' and 'at'"},
+    {"v from 0 0 1 at 0 0 0 up 0 0 2 angle 45 resolution 8 8\n", ":1: the view's 'up' is zero or"},
+    {"v from 0 0 1 at 0 0 0 up 0 0 0 angle 45 resolution 8 8\n", ":1: the view's 'up' is zero or"},
+    {"v from 0 0 1 at 0 0 0 up 0 1 0 angle 0 resolution 8 8\n", ":1: the view's 'angle'"},
+    {"v from 0 0 1 at 0 0 0 up 0 1 0 angle 180 resolution 8 8\n", ":1: the view's 'angle'"},
+    {"v from 0 0 1 at 0 0 0 up 0 1 0 angle 45 resolution 0 8\n", ":1: 'resolution' is 0"},
+    {"v from 0 0 1 at 0 0 0 up 0 1 0 angle 45 resolution 8 99999\n", ":1: 'resolution' is 99999"},
+};
+
+TEST(Nff, ViewsThatShowNothingAreRefused) {
+  for (const BadText& bad : kBadViews)
+    EXPECT_EQ(ProblemOf(bad.text).find(std::string("x.nff") + bad.problem), 0U)
+        << bad.text << ProblemOf(bad.text);
 }
 
 TEST(Nff, ASceneNeedsAView) {

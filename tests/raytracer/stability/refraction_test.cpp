@@ -26,7 +26,7 @@ double WrongDecisions(long double range) {
   constexpr int kRays = 100000;
   const long double critical = std::asin(1 / static_cast<long double>(kGlass));
   for (int i = 0; i < kRays; ++i) {
-    const TurnedAxes frame(random.Direction());
+    const Axes frame(random.Direction());
     const long double angle = critical + random.Between(-range, range);
     const auto direction = Rounded<float>(frame.At({std::sin(angle), 0, -std::cos(angle)}));
     const auto normal = Rounded<float>(frame.z);

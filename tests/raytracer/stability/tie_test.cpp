@@ -9,6 +9,7 @@
 #include <array>
 
 #include "raytracer/charts/trials/random.h"
+#include "raytracer/geometry/convert.h"
 #include "raytracer/geometry/intersect.h"
 #include "raytracer/geometry/kernel.h"
 
@@ -81,7 +82,7 @@ int Disagreements(std::string_view name, double height) {
     const Ray<Real> ray = FromAbove<Real>(random, height);
     Hit<Real> expected;
     for (std::uint32_t object = 0; object < kObjects; ++object) {
-      const Polygon<Real>& polygon = model.polygons[model.objects[object].index];
+      const auto polygon = Converted<Real>(shapes.polygons[object]);
       const std::span outline(model.outlines.data() + polygon.first_vertex, polygon.vertex_count);
       const Real t = IntersectPolygon(polygon, outline, ray);
       if (t < expected.t) expected = {t, object, 0, 0};
