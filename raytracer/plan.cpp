@@ -122,7 +122,7 @@ Decision Patches(const SceneFacts& facts, const Options& options) {
   if (patches.cells == 0)
     return {"met directly", fmt::format("{}{}; up to {} are made", asked, needed, kMostPatchCells)};
   return {fmt::format("{0} x {0} cells", patches.cells),
-          fmt::format("{}off by {:.2g} pixel; {}", asked, patches.error_pixels, needed)};
+          fmt::format("{}off by {:.2g} pixel at most; {}", asked, patches.error_pixels, needed)};
 }
 
 Decision SamplesOfPixel(const SceneFacts&, const Options& options) {

@@ -9,6 +9,7 @@ constexpr ChartEntry kCharts[] = {
     {"depth", DepthChart, "how far reflections are followed, against all of them"},
     {"precision", PrecisionChart,
      "kinds of number and kernels, with the scene far from the origin"},
+    {"patches", PatchesChart, "Bezier patches met directly, or as triangles"},
     {"quadrics", QuadricsChart, "spheres as they are, or as triangles"},
     {"offsets", OffsetsChart, "rules for where rays start, over size and distance from the origin"},
     {"cracks", CracksChart, "rays lost between triangles, by the test that finds triangles"},

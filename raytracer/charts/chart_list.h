@@ -22,6 +22,7 @@ std::span<const ChartEntry> Charts();
 ChartTable SamplingChart(Session& session);
 ChartTable DepthChart(Session& session);
 ChartTable PrecisionChart(Session& session);
+ChartTable PatchesChart(Session& session);
 ChartTable QuadricsChart(Session& session);
 ChartTable OffsetsChart(Session& session);
 ChartTable CracksChart(Session& session);

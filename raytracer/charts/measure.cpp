@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "raytracer/charts/chart_table.h"
+#include "raytracer/render/adaptive.h"
 #include "raytracer/render/render.h"
 
 namespace stipple::raytracer {
@@ -26,7 +27,7 @@ double Component(std::int64_t sum, std::uint32_t rays) {
 Pixels PixelsOf(const Raster& raster, ImageSize image, Samples samples) {
   const int width = RasterOf(image, samples).width;
   const int reach = samples.corners() ? 1 : 0;
-  Pixels pixels{image, {}};
+  Pixels pixels{image, {}, 0};
   pixels.rgb.reserve(3 * Index(0, image.height, image.width));
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
@@ -47,6 +48,19 @@ Pixels PixelsOf(const Raster& raster, ImageSize image, Samples samples) {
   return pixels;
 }
 
+/// The later rounds of adaptive sampling, as Render does them on all ranks.
+void Refine(Sampler& sampler, ImageSize image, double tolerance, Raster& raster) {
+  for (;;) {
+    const Doubling doubling = WorthDoubling(raster, image, tolerance);
+    if (std::ranges::all_of(doubling, [](std::uint8_t rays) { return rays == 0; })) return;
+    for (RasterPoint point = 0; point < raster.size(); ++point)
+      if (doubling[point] != 0)
+        Add(sampler.SampleAgain(point, 1 << doubling[point]), raster[point]);
+  }
+}
+
+constexpr int kGuessed = 32;  // rays a point that adaptive sampling may take, for the progress
+
 }  // namespace
 
 double CpuSeconds() {
@@ -56,8 +70,8 @@ double CpuSeconds() {
 }
 
 double EyeRays(ImageSize image, Samples samples) {
-  return static_cast<double>(PointCount(RasterOf(image, samples))) *
-         (samples.corners() ? 1 : samples.per_pixel);
+  const int per_point = samples.corners() ? 1 : samples.adaptive ? kGuessed : samples.per_pixel;
+  return static_cast<double>(PointCount(RasterOf(image, samples))) * per_point;
 }
 
 Pixels Draw(Session& session, Sampler& sampler, ImageSize image, Samples samples) {
@@ -70,7 +84,10 @@ Pixels Draw(Session& session, Sampler& sampler, ImageSize image, Samples samples
     if (raster.size() % static_cast<std::size_t>(size.width) == 0)
       session.progress.Advance(rays_in_row);
   }
-  return PixelsOf(raster, image, samples);
+  if (samples.adaptive) Refine(sampler, image, samples.tolerance, raster);
+  Pixels pixels = PixelsOf(raster, image, samples);
+  pixels.eye_rays = static_cast<double>(sampler.counts().eye_rays);
+  return pixels;
 }
 
 template <class Real>

@@ -17,6 +17,7 @@ namespace stipple::raytracer {
 struct Pixels {
   ImageSize size;
   std::vector<double> rgb;
+  double eye_rays = 0;  // that it took
 };
 
 /// CPU time that this thread has used.
@@ -30,7 +31,7 @@ template <class Real>
 Pixels Draw(Session& session, const ReadyScene<Real>& ready, ShadingChoice shading,
             Samples samples);
 
-/// Rays from the eye that a picture takes.
+/// Rays from the eye that a picture takes; of adaptive sampling about as many as it may.
 double EyeRays(ImageSize image, Samples samples);
 
 /// Root of the mean square of the differences of all components.

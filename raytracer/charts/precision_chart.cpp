@@ -101,7 +101,7 @@ std::string SentenceOf(const ChartTable& table) {
   const double time = SumOf(table, "double", &ChartPoint::cpu_s);
   const double equal = EqualUpTo(table, "double");
   return fmt::format(
-      "Take double: {} in {} of its time; float takes {} of double's time and changes {} of the "
+      "Take double: {} in {} of its time; float takes {} times double's and changes {} of the "
       "pixels at the origin and {} at 1000 from it.",
       equal < 0 ? "nearly long double's picture"
                 : fmt::format("long double's picture to the byte up to {} from the origin",

@@ -9,6 +9,7 @@
 #include <ctime>
 #include <string_view>
 
+#include "raytracer/image/compare.h"
 #include "raytracer/render/picture.h"
 #include "raytracer/render/sampling.h"
 #include "raytracer/scene/load.h"
@@ -78,7 +79,7 @@ int CompareDigits(const char* const* words) {
   const int pixels = std::atoi(words[2]);
   const Drawn own = DrawIn<double>(scene, {pixels, pixels});
   const Drawn exact = DrawIn<long double>(scene, {pixels, pixels});
-  fmt::print("{} {}\n", Compare(own.image, exact.image).pixels,
+  fmt::print("{} {}\n", Compare(Linear(own.image), Linear(exact.image)).pixels,
              static_cast<std::int64_t>(own.counts.Rays() - exact.counts.Rays()));
   return 0;
 }

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "raytracer/geometry/patch.h"
+#include "raytracer/image/compare.h"
 #include "raytracer/render/picture.h"
 #include "raytracer/render/sampling.h"
 #include "raytracer/scene/generate.h"
@@ -168,13 +169,13 @@ TEST(Patches, PicturesAgree) {
     return PictureOf(raster, kSmall, {});
   };
   const Image direct = picture(0);
-  double last = 100;
+  double last = 1;
   for (const int cells : {8, 64}) {
-    const ImageDifference difference = Compare(direct, picture(cells));
-    EXPECT_LT(difference.rms, last / 2);
-    last = difference.rms;
+    const ImageDifference difference = Compare(Linear(direct), Linear(picture(cells)));
+    EXPECT_LT(difference.rmse, last / 2);
+    last = difference.rmse;
   }
-  EXPECT_LT(last, 255 / std::pow(10, 50 / 20.0));  // 50 dB
+  EXPECT_LT(last, 1 / std::pow(10, 50 / 20.0));  // 50 dB
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include <cmath>
 
+#include "raytracer/image/compare.h"
 #include "raytracer/scene/generate.h"
 #include "tests/raytracer/stability/trace_picture.h"
 
@@ -16,7 +17,9 @@ namespace {
 
 constexpr ImageSize kImage{96, 96};
 
-double Decibels(const Image& a, const Image& b) { return 20 * std::log10(255 / Compare(a, b).rms); }
+double Decibels(const Image& a, const Image& b) {
+  return 20 * std::log10(1 / Compare(Linear(a), Linear(b)).rmse);
+}
 
 TEST(Depth, TooSmallLosesMirroredLight) {
   const Scene scene = Balls(3);

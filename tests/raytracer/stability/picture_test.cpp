@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "raytracer/charts/moved.h"
+#include "raytracer/image/compare.h"
 #include "raytracer/scene/generate.h"
 #include "tests/raytracer/stability/compare_counts.h"
 #include "tests/raytracer/stability/trace_picture.h"
@@ -34,7 +35,7 @@ TEST(WholePicture, HasExactlyTheSameRaysAtScalesThatArePowersOfTwo) {
       ExpectSameCounts(scaled.counts, plain.counts);
       EXPECT_EQ(scaled.counts.tests.box_tests, plain.counts.tests.box_tests);
       EXPECT_EQ(scaled.counts.tests.primitive_tests, plain.counts.tests.primitive_tests);
-      EXPECT_TRUE(Compare(scaled.picture, plain.picture).Identical());
+      EXPECT_TRUE(Compare(Linear(scaled.picture), Linear(plain.picture)).Identical());
     }
   }
 }
@@ -56,7 +57,7 @@ TEST(WholePicture, IsLongDoublesPicture) {
     const Traced traced = Trace<double>(scene, "bvh", kImage);
     const Traced truth = Trace<long double>(scene, "scalar", kImage);
     ExpectSameCounts(traced.counts, truth.counts);
-    EXPECT_TRUE(Compare(traced.picture, truth.picture).Identical());
+    EXPECT_TRUE(Compare(Linear(traced.picture), Linear(truth.picture)).Identical());
   }
 }
 
