@@ -24,8 +24,9 @@ inline constexpr std::size_t kShapeKinds = 5;
 /// Nodes on the longest path of any tree that BuildModel makes; the traversal's stack relies on it.
 inline constexpr std::size_t kMaxBvhDepth = 112;
 
-/// Shapes lie in blocks, in the order of the hierarchy's leaves: each leaf begins a block. A shape's
-/// slot is its lane among all of its kind. Only patches lie one by one; a patch's slot is its index.
+/// Shapes lie in blocks, in the order of the hierarchy's leaves: each leaf begins a block. A
+/// shape's slot is its lane among all of its kind. Only patches lie one by one; a patch's slot is
+/// its index.
 template <class Real>
 struct Model {
   Array<Object> objects;  // by object number; `index` is the slot
