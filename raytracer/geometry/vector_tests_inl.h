@@ -222,7 +222,10 @@ class VectorTests {
     for (std::size_t i = 0; i < kLanes; i += hn::MaxLanes(d)) {
       const Three<V> normal = LoadThree(block.normal, i);
       const V slope = Dot(normal, direction);
-      const V t = hn::Div(hn::Sub(hn::Load(d, block.offset + i), Dot(normal, origin)), slope);
+      const V height = hn::Sub(hn::Load(d, block.offset + i), Dot(normal, origin));
+      // A plane that the ray leaves needs no division.
+      if (hn::AllTrue(d, hn::Lt(hn::Xor(height, slope), hn::Zero(d)))) continue;
+      const V t = hn::Div(height, slope);
       const unsigned lanes = BitsOf(d, hn::And(hn::Gt(t, hn::Zero(d)), hn::Le(t, farthest)));
       if (lanes == 0) continue;
       ahead |= lanes << i;
