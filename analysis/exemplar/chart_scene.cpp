@@ -166,7 +166,8 @@ Scene SceneOf(const MeasuredChart& chart) {
   std::vector<Scene> panels;
   for (const std::string& panel : NamesIn(chart.table, "panel"))
     panels.push_back(XyView(XyPanel(chart, panel, series)));
-  return SceneGrid(chart.name, chart.title, panels, 2, kPanelGap);
+  constexpr std::size_t kMany = 8;
+  return SceneGrid(chart.name, chart.title, panels, panels.size() > kMany ? 3 : 2, kPanelGap);
 }
 
 }  // namespace stipple

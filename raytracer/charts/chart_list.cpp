@@ -13,6 +13,7 @@ constexpr ChartEntry kCharts[] = {
     {"quadrics", QuadricsChart, "spheres as they are, or as triangles"},
     {"offsets", OffsetsChart, "rules for where rays start, over size and distance from the origin"},
     {"cracks", CracksChart, "rays lost between triangles, by the test that finds triangles"},
+    {"packets", PacketsChart, "rays one by one or in packets, by where they come from"},
 };
 
 }  // namespace

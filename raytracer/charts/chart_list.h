@@ -26,6 +26,7 @@ ChartTable PatchesChart(Session& session);
 ChartTable QuadricsChart(Session& session);
 ChartTable OffsetsChart(Session& session);
 ChartTable CracksChart(Session& session);
+ChartTable PacketsChart(Session& session);
 
 }  // namespace stipple::raytracer
 

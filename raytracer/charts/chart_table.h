@@ -6,9 +6,12 @@
 #define STIPPLE_RAYTRACER_CHARTS_CHART_TABLE_H
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "raytracer/scene/view.h"
 
 namespace stipple::raytracer {
 
@@ -34,9 +37,10 @@ struct ChartAxis {
 struct ChartTable {
   std::string name{};
   std::string title{};
-  std::string sentence{};        // the answer first: what to take, and what it costs and loses
-  std::string effort{};          // how it was measured, and on what
-  std::string_view quiet{};      // the series that is there for comparison only
+  std::string sentence{};            // the answer first: what to take, and what it costs and loses
+  std::string effort{};              // how it was measured, and on what
+  std::optional<ImageSize> image{};  // of its pictures, if not the session's
+  std::string_view quiet{};          // the series that is there for comparison only
   std::string_view kind = "xy";  // points on logarithmic axes, or "map": a value for each x and y
   ChartAxis x{"cpu_s", "CPU seconds"};
   ChartAxis y{"error", "error"};

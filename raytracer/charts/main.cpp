@@ -51,7 +51,7 @@ void MeasureCharts(const ChartOptions& options) {
   Session session(options.quick);
   for (const ChartEntry* chart : charts) {
     ChartTable table = chart->measure(session);
-    table.effort = session.Effort();
+    table.effort = session.Effort(table.image.value_or(session.image()));
     session.progress.End();
     WriteCsv(table, options.folder);
     fmt::print("{}: {}\n", chart->name, table.sentence);

@@ -65,9 +65,9 @@ template std::unique_ptr<ReadyScene<float>> MakeReady(Scene, std::string_view);
 template std::unique_ptr<ReadyScene<double>> MakeReady(Scene, std::string_view);
 template std::unique_ptr<ReadyScene<long double>> MakeReady(Scene, std::string_view);
 
-std::string Session::Effort() const {
+std::string Session::Effort(ImageSize pictures) const {
   return fmt::format("{}{} x {} pixels, CPU time: least of {}, one thread, {}",
-                     quick ? "quick run: small scenes, " : "", image().width, image().height,
+                     quick ? "quick run: small scenes, " : "", pictures.width, pictures.height,
                      rounds(), ProcessorName());
 }
 

@@ -62,8 +62,8 @@ class Session {
   const bool quick;
   ProgressLine progress{};
 
-  /// How it is measured and on what, in words.
-  std::string Effort() const;
+  /// How it is measured and on what, in words; with pictures of this size.
+  std::string Effort(ImageSize pictures) const;
   int rounds() const { return quick ? 1 : 3; }  // of which the least time counts
   ImageSize image() const { return quick ? ImageSize{64, 64} : ImageSize{128, 128}; }
 

@@ -7,6 +7,7 @@
 
 #include <embree3/rtcore.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -123,8 +124,7 @@ class EmbreeKernel final : public Kernel<Real> {
     found.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(scene_.get(), &context.embree, &found);
     const RTCHit& hit = found.hit;
-    if (hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-    return {found.ray.tfar, objects_[hit.geomID][hit.primID], hit.u, hit.v};
+    return HitOf(found.ray.tfar, hit.geomID, hit.primID, hit.u, hit.v);
   }
 
   [[gnu::noinline]] bool Occluded(const Ray<Real>& ray, Real max_t, TestCounts&) const override {
@@ -135,6 +135,17 @@ class EmbreeKernel final : public Kernel<Real> {
   }
 
   Real Rounding() const override { return std::numeric_limits<float>::epsilon(); }
+
+  RTCScene scene() const { return scene_.get(); }
+  bool HasUserGeometry() const {
+    return !objects_[kPolygons].empty() || !objects_[kPatches].empty();
+  }
+
+  /// What Embree found, in our words.
+  Hit<Real> HitOf(float t, unsigned geometry, unsigned primitive, float u, float v) const {
+    if (geometry == RTC_INVALID_GEOMETRY_ID) return {};
+    return {t, objects_[geometry][primitive], u, v};
+  }
 
  private:
   static void KeepMessage(void* kept, RTCError, const char* text) {
@@ -363,11 +374,111 @@ class EmbreeKernel final : public Kernel<Real> {
   std::array<std::vector<std::uint32_t>, kGeometries> objects_;
 };
 
+/// Embree's types and questions for packets of a width.
+struct Eight {
+  static constexpr unsigned kWidth = 8;
+  using Rays = RTCRay8;
+  using RayHits = RTCRayHit8;
+  static constexpr auto kIntersect = rtcIntersect8;
+  static constexpr auto kOccluded = rtcOccluded8;
+};
+struct Sixteen {
+  static constexpr unsigned kWidth = 16;
+  using Rays = RTCRay16;
+  using RayHits = RTCRayHit16;
+  static constexpr auto kIntersect = rtcIntersect16;
+  static constexpr auto kOccluded = rtcOccluded16;
+};
+
+template <class Packet>
+class PacketsOf final : public EmbreePackets {
+ public:
+  PacketsOf(const Model<double>& model, bool coherent) : kernel_(model), coherent_(coherent) {
+    if (kernel_.HasUserGeometry()) Refuse("no packets of rays with polygons or patches");
+  }
+
+  void Intersect(std::span<const Ray<double>> rays, std::span<Hit<double>> hits) const override {
+    constexpr double kEndless = std::numeric_limits<double>::infinity();
+    RTCIntersectContext context = NewContext();
+    for (std::size_t begin = 0; begin < rays.size(); begin += kWidth) {
+      const auto asked = rays.subspan(begin, std::min<std::size_t>(kWidth, rays.size() - begin));
+      alignas(64) typename Packet::RayHits found;
+      Valid valid{};
+      for (unsigned lane = 0; lane < asked.size(); ++lane) {
+        SetLane(found.ray, lane, asked[lane], kEndless, valid);
+        found.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+        found.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+      }
+      Packet::kIntersect(valid.lanes, kernel_.scene(), &context, &found);
+      for (unsigned i = 0; i < asked.size(); ++i)
+        hits[begin + i] = kernel_.HitOf(found.ray.tfar[i], found.hit.geomID[i], found.hit.primID[i],
+                                        found.hit.u[i], found.hit.v[i]);
+    }
+  }
+
+  void Occluded(std::span<const Ray<double>> rays, std::span<const double> max_t,
+                std::span<std::uint8_t> hidden) const override {
+    RTCIntersectContext context = NewContext();
+    for (std::size_t begin = 0; begin < rays.size(); begin += kWidth) {
+      const auto asked = rays.subspan(begin, std::min<std::size_t>(kWidth, rays.size() - begin));
+      alignas(64) typename Packet::Rays packet;
+      Valid valid{};
+      for (unsigned lane = 0; lane < asked.size(); ++lane)
+        SetLane(packet, lane, asked[lane], max_t[begin + lane], valid);
+      Packet::kOccluded(valid.lanes, kernel_.scene(), &context, &packet);
+      for (unsigned i = 0; i < asked.size(); ++i) hidden[begin + i] = packet.tfar[i] < 0 ? 1 : 0;
+    }
+  }
+
+ private:
+  static constexpr unsigned kWidth = Packet::kWidth;
+
+  /// -1 for lanes that hold a ray, 0 for those of the last packet that do not.
+  struct alignas(64) Valid {
+    int lanes[kWidth];
+  };
+
+  RTCIntersectContext NewContext() const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    if (coherent_) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    return context;
+  }
+
+  static void SetLane(typename Packet::Rays& packet, unsigned lane, const Ray<double>& ray,
+                      double max_t, Valid& valid) {
+    const RTCRay one = EmbreeRay(ray, max_t);
+    packet.org_x[lane] = one.org_x;
+    packet.org_y[lane] = one.org_y;
+    packet.org_z[lane] = one.org_z;
+    packet.tnear[lane] = one.tnear;
+    packet.dir_x[lane] = one.dir_x;
+    packet.dir_y[lane] = one.dir_y;
+    packet.dir_z[lane] = one.dir_z;
+    packet.time[lane] = one.time;
+    packet.tfar[lane] = one.tfar;
+    packet.mask[lane] = one.mask;
+    packet.id[lane] = one.id;
+    packet.flags[lane] = one.flags;
+    valid.lanes[lane] = -1;
+  }
+
+  EmbreeKernel<double> kernel_;
+  bool coherent_;
+};
+
 }  // namespace
 
 template <class Real>
 std::unique_ptr<Kernel<Real>> MakeEmbreeKernel(const Model<Real>& model) {
   return std::make_unique<EmbreeKernel<Real>>(model);
+}
+
+std::unique_ptr<EmbreePackets> MakeEmbreePackets(const Model<double>& model, int width,
+                                                 bool coherent) {
+  if (width == 8) return std::make_unique<PacketsOf<Eight>>(model, coherent);
+  if (width == 16) return std::make_unique<PacketsOf<Sixteen>>(model, coherent);
+  Refuse("no packets of " + std::to_string(width) + " rays");
 }
 
 template std::unique_ptr<Kernel<float>> MakeEmbreeKernel(const Model<float>&);

@@ -9,6 +9,7 @@
 #include "raytracer/charts/measure.h"
 #include "raytracer/charts/moved.h"
 #include "raytracer/charts/range_text.h"
+#include "raytracer/charts/ray_recorder.h"
 
 namespace stipple::raytracer {
 namespace {
@@ -75,6 +76,33 @@ TEST(Moved, ByAPowerOfTwoTheRaysAreTheSame) {
     EXPECT_LT(RootMeanSquare(Draw(session, *here, {}, {1}), Draw(session, *there, {}, {1})), 1e-9)
         << chart_scene.name;
   }
+}
+
+TEST(RayRecorder, KeepsEachRayOfThePictureByKindDepthAndLight) {
+  Session session(true);
+  const ReadyScene<double>& ready = session.Ready(kChartScenes[0]);
+  const RayRecorder recorder(*ready.kernel, ready.scene);
+  const ImageSize image{16, 16};
+  const auto recorded = MakeSampler(ready.scene, ready.model, recorder, {}, image, {});
+  const auto plain = MakeSampler(ready.scene, ready.model, *ready.kernel, {}, image, {});
+  EXPECT_EQ(Draw(session, *recorded, image, {}).rgb, Draw(session, *plain, image, {}).rgb);
+  const RayCounts& counts = plain->counts();
+  EXPECT_EQ(recorder.RaysOf(RayKind::kEye).rays.size(), counts.eye_rays);
+  EXPECT_EQ(recorder.RaysOf(RayKind::kReflected).rays.size(), counts.reflected_rays);
+  const RayList shadow = recorder.RaysOf(RayKind::kShadow);
+  ASSERT_EQ(shadow.rays.size(), counts.shadow_rays);
+  ASSERT_GT(shadow.rays.size(), 100U);
+  // One light for the first depth's rays, then the next, and so on: few changes.
+  int changes = 0;
+  for (std::size_t i = 1; i < shadow.rays.size(); ++i) {
+    const auto end = [&shadow](std::size_t ray) {
+      return shadow.rays[ray].origin + shadow.rays[ray].direction * shadow.max_t[ray];
+    };
+    if (Length(end(i) - end(i - 1)) > 1e-6) ++changes;
+  }
+  const int lights = static_cast<int>(ready.scene.lights.size());
+  EXPECT_GE(changes, lights - 1);
+  EXPECT_LT(changes, lights * ShadingChoice{}.max_depth);
 }
 
 TEST(Measure, EachCandidateIsDrawnOnceARound) {

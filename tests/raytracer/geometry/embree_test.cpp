@@ -6,6 +6,7 @@
 
 #include "raytracer/errors.h"
 #include "raytracer/geometry/convert.h"
+#include "raytracer/geometry/embree_kernel.h"
 #include "raytracer/render/sampling.h"
 #include "raytracer/scene/generate.h"
 
@@ -63,6 +64,58 @@ TYPED_TEST(EmbreeKernelTest, HitsWhatTheScalarKernelHits) {
   EXPECT_LT(shadows, kRays / 5000);
   for (const int count : hits) EXPECT_GT(count, 100);
   EXPECT_EQ(no_tests.box_tests + no_tests.primitive_tests, 0U);
+}
+
+/// Rays from a sphere around the shapes towards a place among them.
+std::vector<Ray<double>> RaysInwards(std::size_t count) {
+  std::mt19937 random(7);
+  const auto number = [&] { return static_cast<double>(random()) / 2147483648.0 - 1; };
+  std::vector<Ray<double>> rays;
+  while (rays.size() < count) {
+    const Vec3 origin = Normalized(Vec3{number(), number(), number()}) * 9;
+    rays.push_back({origin, Normalized(Vec3{number(), number(), number()} * 3 - origin)});
+  }
+  return rays;
+}
+
+TEST(EmbreePackets, AnswerAsEmbreeDoesOneByOne) {
+  Shapes shapes;
+  shapes.AddSphere({0, 0, 0}, 1, 0);
+  shapes.AddCone({0, 3, -1}, 1, {0, 3.5, 1}, 0.25, 0);
+  shapes.AddPolygon(std::vector<Vec3>{{-3, -1, 0}, {-2, -1, 0}, {-2, 1, 1}}, {}, 0);
+  shapes.AddPolygon(std::vector<Vec3>{{-4, -4, -2}, {5, -4, -2}, {5, 5, -2}, {-4, 5, -2}}, {}, 0);
+  const auto model = BuildModel<double>(std::move(shapes), HierarchyFor("embree"));
+  const auto single = MakeKernel("embree", model);
+  const std::vector<Ray<double>> rays = RaysInwards(10003);  // the last packet is not full
+  const std::vector<double> max_t(rays.size(), 9);
+  for (const int width : {8, 16})
+    for (const bool coherent : {false, true}) {
+      const auto packets = MakeEmbreePackets(model, width, coherent);
+      std::vector<Hit<double>> hits(rays.size());
+      std::vector<std::uint8_t> hidden(rays.size());
+      packets->Intersect(rays, hits);
+      packets->Occluded(rays, max_t, hidden);
+      TestCounts tests;
+      int others = 0, found = 0, shadows = 0;
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        const Hit<double> expected = single->Intersect(rays[i], tests);
+        found += expected.object != kNoObject ? 1 : 0;
+        if (hits[i].object != expected.object ||
+            (expected.object != kNoObject && std::abs(hits[i].t - expected.t) > 1e-4))
+          ++others;
+        if ((hidden[i] != 0) != single->Occluded(rays[i], max_t[i], tests)) ++shadows;
+      }
+      EXPECT_GT(found, 1000) << width;
+      EXPECT_LT(others, 5) << width << (coherent ? " coherent" : "");
+      EXPECT_LT(shadows, 5) << width << (coherent ? " coherent" : "");
+    }
+}
+
+TEST(EmbreePackets, OfOtherWidthsAndWithShapesOfOurOwnAreRefused) {
+  const auto model = BuildModel<double>({}, HierarchyFor("embree"));
+  EXPECT_THROW(MakeEmbreePackets(model, 7, false), UsageError);
+  const auto own = BuildModel<double>(AllKinds(), HierarchyFor("embree"));
+  EXPECT_THROW(MakeEmbreePackets(own, 8, false), UsageError);
 }
 
 TYPED_TEST(EmbreeKernelTest, AnEmptySceneHasNoHits) {
