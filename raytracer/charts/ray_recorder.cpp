@@ -2,7 +2,6 @@
 #include "raytracer/charts/ray_recorder.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace stipple::raytracer {
 

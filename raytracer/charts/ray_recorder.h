@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <utility>
 #include <vector>
@@ -33,7 +34,9 @@ class RayRecorder final : public Kernel<double> {
 
   Hit<double> Intersect(const Ray<double>& ray, TestCounts& tests) const override;
   bool Occluded(const Ray<double>& ray, double max_t, TestCounts& tests) const override;
-  double Rounding() const override { return kernel_.Rounding(); }
+  /// Float's, so that rays start far enough from surfaces to be asked again in float: from where
+  /// double lets them start, most would meet the surface that they leave.
+  double Rounding() const override { return std::numeric_limits<float>::epsilon(); }
 
   /// All rays of a kind so far.
   RayList RaysOf(RayKind kind) const;
