@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -54,19 +55,27 @@ XyPoint PointOf(const MeasuredChart& chart, const Row& row) {
 }
 
 /// CPU time of a series over that of the one with the recommended points, where the axes do not
-/// show it.
+/// show it: the median over points of the same panel and setting, since one may be far off.
 std::string TimeBeside(const MeasuredChart& chart, const std::string& series) {
   if (chart.x.column == "cpu_s" || chart.y.column == "cpu_s") return {};
   std::string recommended;
   for (const Row& row : chart.table.rows)
     if (NumberOf(chart, row, "recommended") > 0) recommended = TextOf(chart, row, "series");
   if (series == recommended) return {};
-  double own = 0, other = 0;
+  std::map<std::string, double> others;
+  for (const Row& row : chart.table.rows)
+    if (TextOf(chart, row, "series") == recommended)
+      others[TextOf(chart, row, "panel") + '/' + TextOf(chart, row, "label")] =
+          NumberOf(chart, row, "cpu_s");
+  std::vector<double> ratios;
   for (const Row& row : chart.table.rows) {
-    if (TextOf(chart, row, "series") == series) own += NumberOf(chart, row, "cpu_s");
-    if (TextOf(chart, row, "series") == recommended) other += NumberOf(chart, row, "cpu_s");
+    const auto other = others.find(TextOf(chart, row, "panel") + '/' + TextOf(chart, row, "label"));
+    if (TextOf(chart, row, "series") == series && other != others.end() && other->second > 0)
+      ratios.push_back(NumberOf(chart, row, "cpu_s") / other->second);
   }
-  return own > 0 && other > 0 ? fmt::format(", {:.2g} \u00d7 CPU", own / other) : "";
+  if (ratios.empty()) return {};
+  std::ranges::sort(ratios);
+  return fmt::format(", {:.2g} \u00d7 CPU", ratios[ratios.size() / 2]);
 }
 
 /// One series in one panel. A name that its points say already is left away.

@@ -71,10 +71,11 @@ void Recommend(std::string_view panel, ChartTable& table) {
   farthest->recommended = true;
 }
 
-double SumOf(const ChartTable& table, std::string_view series, double ChartPoint::*figure) {
+/// CPU time of all scenes at the origin.
+double TimeAtOrigin(const ChartTable& table, std::string_view series) {
   double sum = 0;
   for (const ChartPoint& p : table.points)
-    if (p.series == series) sum += p.*figure;
+    if (p.series == series && p.more[0] == 0) sum += p.cpu_s;
   return sum;
 }
 
@@ -98,16 +99,16 @@ double EqualUpTo(const ChartTable& table, std::string_view series) {
 }
 
 std::string SentenceOf(const ChartTable& table) {
-  const double time = SumOf(table, "double", &ChartPoint::cpu_s);
+  const double time = TimeAtOrigin(table, "double");
   const double equal = EqualUpTo(table, "double");
   return fmt::format(
-      "Take double: {} in {} of its time; float takes {} times double's and changes {} of the "
-      "pixels at the origin and {} at 1000 from it.",
+      "Take double: {} in {} of its time; float takes {} times double's at the origin, where "
+      "it changes {} of the pixels, and {} at 1000 from it.",
       equal < 0 ? "nearly long double's picture"
                 : fmt::format("long double's picture to the byte up to {} from the origin",
                               ShortNumber(equal)),
-      ShortNumber(time / SumOf(table, "long double", &ChartPoint::cpu_s)),
-      ShortNumber(SumOf(table, "float", &ChartPoint::cpu_s) / time), PercentAt(table, "float", 0),
+      ShortNumber(time / TimeAtOrigin(table, "long double")),
+      ShortNumber(TimeAtOrigin(table, "float") / time), PercentAt(table, "float", 0),
       PercentAt(table, "float", 1e3));
 }
 
