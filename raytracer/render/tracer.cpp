@@ -48,21 +48,6 @@ std::int64_t ToFixed(double value) {
          std::bit_cast<std::int64_t>(kWhole);
 }
 
-void Add(const RayResult& more, RayResult& sum) {
-  if (sum.rays == 0) {
-    sum = more;
-    return;
-  }
-  sum.color.red += more.color.red;
-  sum.color.green += more.color.green;
-  sum.color.blue += more.color.blue;
-  sum.lost += more.lost;
-  sum.squares += more.squares;
-  sum.work += more.work;
-  sum.rays = static_cast<std::uint16_t>(sum.rays + more.rays);
-  sum.depth = std::max(sum.depth, more.depth);
-}
-
 template <class Real, Rules kRules>
 Tracer<Real, kRules>::Tracer(const Scene& scene, const Model<Real>& model,
                              const Kernel<Real>& kernel, ShadingChoice choice)
