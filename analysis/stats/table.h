@@ -28,6 +28,11 @@ std::vector<Cell> RowOf(Values&&... values) {
 }
 
 /// What a column holds. The name is the JSON key and carries the unit: "exclusive_s", "bytes".
+///
+/// Views go by names and order, so any statistic can feed any view that fits: "time_s" comes first
+/// and makes a table a series over time (a value holds until the next one); "rank" comes next and
+/// says whose row it is; "low" and "high" first are the ends of a histogram's class, high not
+/// included; columns of text name a row; the other numbers are values. Shares are fractions of 1.
 struct Column {
   std::string name;
 };

@@ -3,8 +3,10 @@
 #ifndef STIPPLE_ANALYSIS_VIEWS_VIEW_LIST_H
 #define STIPPLE_ANALYSIS_VIEWS_VIEW_LIST_H
 
+#include <limits>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "analysis/stats/finding.h"
 #include "analysis/stats/table.h"
@@ -21,6 +23,9 @@ struct ViewInput {
   const Table* messages = nullptr;     // matrix of counts
   const Table* volume = nullptr;       // matrix of bytes
   const Finding* finding = nullptr;
+  std::vector<const Table*> tables{};  // what views of any table show, several on one scale
+  double at_s = std::numeric_limits<double>::infinity();  // the moment that dials, LEDs and the
+                                                          // like show; the end if beyond it
 };
 
 using View = Scene (*)(const ViewInput& input);
