@@ -240,7 +240,9 @@ Finding FindingOf(const Analysis& analysis, const Selection& selection,
   const Trace& trace = analysis.trace;
   // A host is there to wait for requests: nothing is lost by that.
   std::vector<Blame> blames = all_blames;
-  std::erase_if(blames, [&trace](const Blame& b) { return trace.IsHost(b.waiter); });
+  std::erase_if(blames, [&trace](const Blame& b) {
+    return trace.IsHost(b.waiter) || b.kind == WaitKind::kMessageOverhead;
+  });
   const std::vector<RankStates> states = StatesOf(analysis, selection);
   const Totals totals = Sum(trace, states);
   Finding f;
