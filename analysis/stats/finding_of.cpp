@@ -42,7 +42,7 @@ std::string Number(const char* format, double value) {
   return text;
 }
 
-bool IsOverhead(const Blame& b) { return NameOf(b.kind) == "message-overhead"; }
+bool IsOverhead(const Blame& b) { return b.kind == WaitKind::kMessageOverhead; }
 
 /// What the sentence is chosen from. A host is there to wait for requests: nothing is lost by that,
 /// so its own waiting is left out.
