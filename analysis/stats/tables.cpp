@@ -112,8 +112,7 @@ TableAnswer Volume(const Analysis& analysis, const Selection& selection, bool) {
 }
 
 TableAnswer Waits(const Analysis& analysis, const Selection& selection, bool) {
-  const std::vector<Blame> blames =
-      BlameOf(analysis.trace, analysis.mpi, analysis.waits, selection);
+  const std::vector<Blame> blames = BlameOf(analysis, selection);
   const Finding finding = FindingOf(analysis, selection, blames);
   return {WaitsTable(analysis.trace, blames), finding.sentence};
 }
@@ -123,8 +122,7 @@ TableAnswer Imbalance(const Analysis& analysis, const Selection& selection, bool
               TableShape::kObject,
               {{"max_over_mean"}, {"idle_share"}, {"cause"}, {"sentence"}},
               {}};
-  const std::vector<Blame> blames =
-      BlameOf(analysis.trace, analysis.mpi, analysis.waits, selection);
+  const std::vector<Blame> blames = BlameOf(analysis, selection);
   const Finding f = FindingOf(analysis, selection, blames);
   if (!analysis.trace.locations().empty())
     table.rows.push_back({f.max_over_mean, f.idle_share, f.cause, f.sentence});

@@ -187,7 +187,7 @@ using BlameKey = std::tuple<std::int32_t, std::int32_t, WaitKind>;  // waiter, c
 /// Follows chains of waits.
 class Charger {
  public:
-  Charger(const Trace& trace, const MpiActivity& mpi, const std::vector<CallWait>& waits) {
+  Charger(const Trace& trace, const MpiActivity& mpi, std::span<const CallWait> waits) {
     for (std::size_t c = 0; c < mpi.calls.size(); ++c) {
       const MpiCall& call = mpi.calls[c];
       const Location& l = trace.locations()[call.location];
@@ -340,7 +340,7 @@ std::vector<CallWait> FindWaits(const Trace& trace, const MpiActivity& mpi) {
 }
 
 std::vector<Blame> BlameOf(const Trace& trace, const MpiActivity& mpi,
-                           const std::vector<CallWait>& waits, const Selection& selection) {
+                           std::span<const CallWait> waits, const Selection& selection) {
   Charger charger(trace, mpi, waits);
   charger.ChargeAll(selection);
   std::vector<Blame> blames;

@@ -14,6 +14,7 @@
 #define STIPPLE_ANALYSIS_STATS_WAITS_H
 
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -49,7 +50,7 @@ struct Blame {
 
 /// Waits of main threads in the selected span, summed over waiter, culprit and kind, longest first.
 std::vector<Blame> BlameOf(const Trace& trace, const MpiActivity& mpi,
-                           const std::vector<CallWait>& waits, const Selection& selection);
+                           std::span<const CallWait> waits, const Selection& selection);
 
 /// Rows kind, waiter, culprit, seconds, region.
 Table WaitsTable(const Trace& trace, const std::vector<Blame>& blames);
