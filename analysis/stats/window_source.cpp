@@ -239,8 +239,16 @@ Table AnalysisSource::MatrixUntil(std::int64_t time_ns) const {
 }
 
 Table AnalysisSource::TableNamed(std::string_view name, bool per_rank) const {
+  // Fine enough for a cursor that moves, coarse enough to hold for many ranks.
+  constexpr std::size_t kMostRows = 100'000, kMostWindows = 400;
+  const auto windows = static_cast<std::int64_t>(std::clamp<std::size_t>(
+      kMostRows / std::max<std::size_t>(1, ranks_.size()), 40, kMostWindows));
+  const std::int64_t window_ns = std::max<std::int64_t>(1, analysis_.trace.SpanNs() / windows);
   for (const TableEntry& entry : TableEntries())
-    if (entry.name == name) return entry.make(analysis_, {}, per_rank && entry.per_rank).table;
+    if (entry.name == name)
+      return entry
+          .make(analysis_, {}, {.per_rank = per_rank && entry.per_rank, .window_ns = window_ns})
+          .table;
   return {};
 }
 

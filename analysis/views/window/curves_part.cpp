@@ -128,9 +128,9 @@ Layer UtilisationCurve(const Timeline& visible, const Timeline& whole, const Tim
                        const Area& area) {
   Layer layer{"utilisation", {}};
   const double text =
-      AddTitle(layer, {area.left, area.top - kTitleHeight / 2 - 1}, "Processor utilisation");
+      AddTitle(layer, {area.left, area.top - kTitleHeight / 2}, "Processor utilisation");
   if (visible.rows.empty() || visible.rows.front().columns.empty()) return layer;
-  AddText(layer, {text, area.top - kTitleHeight / 2 - 1},
+  AddText(layer, {text, area.top - kTitleHeight / 2},
           fmt::format("mean of {}s \u00b7 band: least to most \u00b7 dashed: since the start",
                       NounFor(visible)),
           {.size = 12, .colour = kSecondary});
@@ -146,7 +146,7 @@ Layer UtilisationCurve(const Timeline& visible, const Timeline& whole, const Tim
 
 Layer LoadCurve(const Timeline& visible, const TimeAxis& axis, const Area& area) {
   Layer layer{"load", {}};
-  const double text = AddTitle(layer, {area.left, area.top - kTitleHeight / 2 - 1}, "Message load");
+  const double text = AddTitle(layer, {area.left, area.top - kTitleHeight / 2}, "Message load");
   const std::size_t columns = visible.sent_bytes.size();
   if (columns == 0) return layer;
   const std::size_t steps = StepsFor(axis, columns);
@@ -156,13 +156,13 @@ Layer LoadCurve(const Timeline& visible, const TimeAxis& axis, const Area& area)
         visible.sent_bytes[c] * static_cast<double>(steps) / (visible.end_s - visible.begin_s);
   const double largest = *std::ranges::max_element(load);
   if (largest <= 0) {
-    AddText(layer, {text, area.top - kTitleHeight / 2 - 1}, "nothing was sent here",
+    AddText(layer, {text, area.top - kTitleHeight / 2}, "nothing was sent here",
             {.size = 12, .colour = kSecondary});
     return layer;
   }
   const Frame frame{axis, area, RoundStep(largest, 1)};
   const Unit unit = ByteUnitFor(frame.largest);
-  AddText(layer, {text, area.top - kTitleHeight / 2 - 1}, fmt::format("{}/s", unit.name),
+  AddText(layer, {text, area.top - kTitleHeight / 2}, fmt::format("{}/s", unit.name),
           {.size = 12, .colour = kSecondary});
   frame.Grid(layer, FormatShort(frame.largest / 2 / unit.size),
              FormatShort(frame.largest / unit.size));

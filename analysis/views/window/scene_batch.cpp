@@ -78,13 +78,17 @@ struct Builder {
           {a.x - nx, a.y - ny, -reach, half}},
          paint);
   }
-  void Dashes(Point a, Point b, double width, const Paint& paint) const {
+  /// `phase`: how far along the line this part begins; returned: how far it ends.
+  double Dashes(Point a, Point b, double width, const Paint& paint, double phase) const {
+    constexpr double kPeriod = kDash + kDashGap;
     const double length = std::hypot(b.x - a.x, b.y - a.y);
-    for (double at = 0; at < length; at += kDash + kDashGap) {
-      const double begin = at / length, end = std::min(length, at + kDash) / length;
-      Segment({a.x + (b.x - a.x) * begin, a.y + (b.y - a.y) * begin},
-              {a.x + (b.x - a.x) * end, a.y + (b.y - a.y) * end}, width, paint);
+    for (double at = -std::fmod(phase, kPeriod); at < length; at += kPeriod) {
+      const double begin = std::max(0.0, at) / length, end = std::min(length, at + kDash) / length;
+      if (end > begin)
+        Segment({a.x + (b.x - a.x) * begin, a.y + (b.y - a.y) * begin},
+                {a.x + (b.x - a.x) * end, a.y + (b.y - a.y) * end}, width, paint);
     }
+    return phase + length;
   }
 
   void operator()(const RectShape& r) const {
@@ -104,9 +108,10 @@ struct Builder {
     Paint paint = PaintOf(line.stroke, mono);
     paint.ink = Ink::kLine;
     paint.opacity = line.opacity;
+    double phase = 0;
     for (std::size_t i = 0; i + 1 < line.points.size(); ++i) {
       if (line.dashed)
-        Dashes(line.points[i], line.points[i + 1], line.width, paint);
+        phase = Dashes(line.points[i], line.points[i + 1], line.width, paint, phase);
       else
         Segment(line.points[i], line.points[i + 1], line.width, paint);
     }

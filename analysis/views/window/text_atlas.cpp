@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/views/window/text_atlas.h"
 
-#include <vtkFreeTypeTools.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkStdString.h>
 #include <vtkTextProperty.h>
+#include <vtkTextRenderer.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -60,8 +60,8 @@ TextAtlas::Rendered TextAtlas::Render(const std::string& text, int size, bool bo
   vtkNew<vtkImageData> image;
   int dimensions[2] = {0, 0};
   Rendered rendered;
-  if (!vtkFreeTypeTools::GetInstance()->RenderString(property_, vtkStdString(text), kDpi, image,
-                                                     dimensions))
+  if (!vtkTextRenderer::GetInstance()->RenderString(property_, vtkStdString(text), image,
+                                                    dimensions, kDpi, vtkTextRenderer::FreeType))
     return rendered;
   int extent[6];
   image->GetExtent(extent);

@@ -155,7 +155,7 @@ void TimelinePart::PlaceRows(const TimelineData& data, const Area& area, int cul
   axis_ = {begin_s_, end_s_, area.left + AxisLeft(grid_), area.right()};
   const std::vector<MarkName> names = NameMarks(data.states, axis_);
   double above = names.empty() ? 0 : std::min(MarkStrip(names), area.height / 5);
-  if (grid_.pitch >= kLeastPitchForMarks && !data.messages.empty()) above = std::max(above, 12.0);
+  if (grid_.pitch >= kLeastPitchForMarks && !data.messages.empty()) above += 13;
   limits.top += above;
   limits.max_height -= above;
   grid_ = rows_for();

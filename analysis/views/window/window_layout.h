@@ -37,7 +37,7 @@ struct WindowLayout {
 };
 
 inline constexpr double kWindowMargin = 16;
-inline constexpr double kTitleHeight = 24;  // above the timeline, a curve, a display
+inline constexpr double kTitleHeight = 28;  // above the timeline, a curve, a display
 inline constexpr double kLeastWindowWidth = 320;
 inline constexpr double kLeastWindowHeight = 200;
 

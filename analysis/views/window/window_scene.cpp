@@ -153,7 +153,7 @@ Layer WindowScene::OverviewLayer(const ViewState& state) const {
 
 Layer WindowScene::RowsLayer(const ViewState& state) const {
   Layer layer{"timeline", {}};
-  const double y = layout_.timeline.top - kTitleHeight / 2 - 1;
+  const double y = layout_.timeline.top - kTitleHeight / 2;
   const double right = layout_.timeline.right();
   double x =
       AddTitle(layer, {layout_.timeline.left, y}, fmt::format("State of each {}", NounFor(whole_)));
@@ -199,7 +199,7 @@ Layer WindowScene::DisplaysLayer(const ViewState& state) const {
   Layer layer{"displays", {}};
   const double moment = MomentOfDisplays(state);
   for (const PlacedPanel& placed : layout_.displays) {
-    const double y = placed.area.top - kTitleHeight / 2 - 1;
+    const double y = placed.area.top - kTitleHeight / 2;
     std::string title(NameOf(placed.panel));
     title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
     const double x = AddTitle(layer, {placed.area.left, y}, title);
