@@ -19,7 +19,8 @@ VisitBars VisitBarsOf(const Trace& trace, const Timeline& period, std::size_t mo
   for (std::size_t row = 0; row < period.rows.size(); ++row)
     for (const Location& location : trace.locations()) {
       if (location.rank != period.rows[row].rank || !location.IsMain()) continue;
-      const VisitsOfSpan found = VisitsIn(trace, location, ns(period.begin_s), ns(period.end_s), most);
+      const VisitsOfSpan found =
+          VisitsIn(trace, location, ns(period.begin_s), ns(period.end_s), most);
       count += found.visits.size();
       if (!found.complete || count > most) return {};
       for (const VisitSpan& visit : found.visits) {

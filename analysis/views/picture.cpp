@@ -39,8 +39,8 @@ void Check(cairo_status_t status) {
 
 void Draw(const std::string& svg, cairo_surface_t* surface, double width, double height) {
   GError* error = nullptr;
-  const std::unique_ptr<RsvgHandle, Freeing> handle(rsvg_handle_new_from_data(
-      reinterpret_cast<const guint8*>(svg.data()), svg.size(), &error));
+  const std::unique_ptr<RsvgHandle, Freeing> handle(
+      rsvg_handle_new_from_data(reinterpret_cast<const guint8*>(svg.data()), svg.size(), &error));
   if (!handle) {
     const std::string problem = error->message;
     g_error_free(error);

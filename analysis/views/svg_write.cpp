@@ -104,8 +104,8 @@ std::string Grey(std::string_view colour) {
                     static_cast<std::uint8_t>(rgb & 255)};
   for (std::size_t s = 0; s < kStateCount; ++s)
     if (read == kStateColours[s]) return std::string(kFills[s]);
-  const int grey = static_cast<int>(
-      std::lround(0.299 * read.red + 0.587 * read.green + 0.114 * read.blue));
+  const int grey =
+      static_cast<int>(std::lround(0.299 * read.red + 0.587 * read.green + 0.114 * read.blue));
   return fmt::format("#{0:02x}{0:02x}{0:02x}", grey);
 }
 
