@@ -149,8 +149,17 @@ class Trace {
   /// scanned at the same time.
   template <class Visitor>
   void Scan(const Location& l, Visitor& visitor) const {
-    counts_[l.index] = ScanThread(*l.stream, ProcessOf(l).RegionCount(), visitor,
-                                  [this](std::uint64_t bytes) { TellRead(bytes); });
+    ScanParts(l, visitor, kNoTickLimit, [](const ScanPosition&) {});
+  }
+  /// The same, and `part_done(const ScanPosition&)` is called behind each chunk and within it
+  /// behind every `part_words` words or so: what the visitor knows then, with
+  /// ScanPosition::Place(), is what an index of the events needs, see ProfileVisitor::OpenStack.
+  template <class Visitor, class PartDone>
+  void ScanParts(const Location& l, Visitor& visitor, std::uint64_t part_words,
+                 PartDone&& part_done) const {
+    counts_[l.index] = ScanThread(
+        *l.stream, ProcessOf(l).RegionCount(), visitor,
+        [this](std::uint64_t bytes) { TellRead(bytes); }, part_words, part_done);
   }
   /// Calls `body` for each location of `some` on several cores, so that each may be scanned once;
   /// the meter counts it as one phase.
