@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "analysis/stats/blame.h"
 #include "analysis/stats/kernel_time.h"
 #include "analysis/stats/selection.h"
 #include "analysis/stats/waits.h"
