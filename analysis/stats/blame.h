@@ -26,6 +26,7 @@
 #define STIPPLE_ANALYSIS_STATS_BLAME_H
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "analysis/stats/selection.h"
@@ -60,7 +61,7 @@ std::vector<BlamePiece> BlamePiecesOf(const Trace& trace, const MpiActivity& mpi
 
 /// Summed over waiter, culprit and kind, longest first.
 std::vector<Blame> BlameOf(const Trace& trace, const MpiActivity& mpi,
-                           const std::vector<CallWait>& waits, const Selection& selection);
+                           std::span<const CallWait> waits, const Selection& selection);
 
 /// Rows kind, waiter, culprit, seconds, region.
 Table WaitsTable(const Trace& trace, const std::vector<Blame>& blames);

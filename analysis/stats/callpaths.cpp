@@ -12,8 +12,10 @@
 #include <unordered_map>
 #include <utility>
 
+#include "analysis/stats/finding_of.h"
 #include "analysis/stats/number.h"
 #include "analysis/trace/call_stack.h"
+#include "analysis/trace/demangle.h"
 #include "analysis/trace/native_stack.h"
 
 namespace stipple {
@@ -334,6 +336,41 @@ std::string SamplesText(const CallPaths& paths) {
       "From {}, {} of processor time: a share is an estimate, {:.1f} % more or less.",
       FormatCount(paths.sample_count, "sample"), FormatSeconds(paths.sampled_ns * 1e-9),
       worst * 100);
+}
+
+TableAnswer CallPathsAnswer(const Analysis& analysis, const Selection& selection,
+                            const TableOptions&) {
+  const CallPaths paths = CallPathsOf(analysis.trace, selection);
+  TableAnswer answer{CallPathsTable(paths), "No region was visited."};
+  const PathTree& tree = paths.has_events ? paths.events : paths.samples;
+  const PathTree::Node* best = nullptr;
+  for (const PathTree::Node& n : tree.nodes())
+    if (!n.name.empty() && (best == nullptr || n.own.exclusive_ns > best->own.exclusive_ns))
+      best = &n;
+  if (best == nullptr) return answer;
+  std::string path;
+  for (const PathTree::Node* n = best; !n->name.empty(); n = &tree.nodes()[n->parent])
+    path = ShortName(n->name) + (path.empty() ? "" : " > ") + path;
+  answer.headline = PercentText(best->own.exclusive_ns, tree.nodes().front().inclusive_ns) +
+                    " of the time is spent at the end of " + path + ".";
+  if (!paths.has_events) answer.headline += " " + SamplesText(paths);
+  if (!analysis.steps.empty())
+    answer.headline +=
+        " Of functions that the budget left without times only timed visits have time here, the "
+        "rest is their callers', and visits that were only counted are missing: see profile.";
+  return answer;
+}
+
+TableAnswer SampledProfileAnswer(const Analysis& analysis, const Selection& selection) {
+  const CallPaths paths = CallPathsOf(analysis.trace, selection);
+  TableAnswer answer{SampledProfileTable(paths), "No region was visited."};
+  const auto& rows = answer.table.rows;
+  if (!rows.empty())
+    answer.headline = PercentText(std::get<double>(rows.front().back()), paths.sampled_ns * 1e-9) +
+                      " of the time is spent in " +
+                      ShortName(std::get<std::string>(rows.front().front())) + " itself. " +
+                      SamplesText(paths);
+  return answer;
 }
 
 }  // namespace stipple

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "analysis/stats/analysis.h"
 #include "analysis/stats/selection.h"
 #include "analysis/stats/table.h"
 #include "analysis/trace/trace.h"
@@ -80,6 +81,11 @@ Table SampledProfileTable(const CallPaths& paths);
 /// "From 812 samples, 0.81 s of processor time: a share is an estimate, 3.4 % more or less.": the
 /// widest 95 % interval of any share.
 std::string SamplesText(const CallPaths& paths);
+
+/// Both with the sentence.
+TableAnswer CallPathsAnswer(const Analysis& analysis, const Selection& selection,
+                            const TableOptions& options);
+TableAnswer SampledProfileAnswer(const Analysis& analysis, const Selection& selection);
 
 }  // namespace stipple
 

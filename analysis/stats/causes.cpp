@@ -51,7 +51,7 @@ class Asker {
 /// The blames, still without regions, and where these are asked.
 class Blamer {
  public:
-  Blamer(const Trace& trace, const MpiActivity& mpi, const std::vector<CallWait>& waits,
+  Blamer(const Trace& trace, const MpiActivity& mpi, std::span<const CallWait> waits,
          const Selection& selection, WaitGraph& graph, Asker& asker) {
     std::vector<BlamePiece> pieces = BlamePiecesOf(trace, mpi, graph, selection);
     const auto key = [](const BlamePiece& p) { return std::tuple(p.waiter, p.culprit, p.kind); };
@@ -93,7 +93,7 @@ class Blamer {
 }  // namespace
 
 std::vector<Blame> BlameOf(const Trace& trace, const MpiActivity& mpi,
-                           const std::vector<CallWait>& waits, const Selection& selection) {
+                           std::span<const CallWait> waits, const Selection& selection) {
   WaitGraph graph(trace, mpi, waits);
   Asker asker(trace);
   Blamer blamer(trace, mpi, waits, selection, graph, asker);

@@ -56,4 +56,14 @@ Table ChannelsTable(const Analysis& analysis, const Selection& selection) {
   return table;
 }
 
+TableAnswer ChannelsAnswer(const Analysis& analysis, const Selection& selection,
+                           const TableOptions&) {
+  Table table = ChannelsTable(analysis, selection);
+  std::int64_t messages = 0;
+  for (const auto& row : table.rows) messages += std::get<std::int64_t>(row[2]);
+  std::string headline =
+      "Threads received " + std::to_string(messages) + " messages from each other.";
+  return {std::move(table), std::move(headline)};
+}
+
 }  // namespace stipple

@@ -15,6 +15,9 @@ namespace stipple {
 /// their receivers looked for them.
 Table ChannelsTable(const Analysis& analysis, const Selection& selection);
 
+TableAnswer ChannelsAnswer(const Analysis& analysis, const Selection& selection,
+                           const TableOptions& options);
+
 }  // namespace stipple
 
 #endif

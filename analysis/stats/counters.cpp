@@ -116,4 +116,13 @@ Table CountersTable(const Trace& trace, const Selection& selection) {
   return table;
 }
 
+TableAnswer CountersAnswer(const Analysis& analysis, const Selection& selection,
+                           const TableOptions&) {
+  Table table = CountersTable(analysis.trace, selection);
+  std::string headline = table.rows.empty()
+                             ? "No counter was recorded."
+                             : "What the program counted: each value holds until the next one.";
+  return {std::move(table), std::move(headline)};
+}
+
 }  // namespace stipple

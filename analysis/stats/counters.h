@@ -4,6 +4,7 @@
 #ifndef STIPPLE_ANALYSIS_STATS_COUNTERS_H
 #define STIPPLE_ANALYSIS_STATS_COUNTERS_H
 
+#include "analysis/stats/analysis.h"
 #include "analysis/stats/selection.h"
 #include "analysis/stats/table.h"
 #include "analysis/trace/trace.h"
@@ -14,6 +15,9 @@ namespace stipple {
 /// last value, the least and the greatest, and the mean over time, from the first one to the end of
 /// the rank or the span. Values are in the counter's unit. Scans the archive.
 Table CountersTable(const Trace& trace, const Selection& selection);
+
+TableAnswer CountersAnswer(const Analysis& analysis, const Selection& selection,
+                           const TableOptions& options);
 
 }  // namespace stipple
 

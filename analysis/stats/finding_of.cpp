@@ -334,7 +334,7 @@ Finding FindingOf(const Analysis& analysis, const Selection& selection,
 
 Finding FindingOf(const Trace& trace) {
   const Analysis analysis(trace);
-  return FindingOf(analysis, {}, BlameOf(trace, analysis.mpi, analysis.waits, {}));
+  return FindingOf(analysis, {}, BlameOf(analysis, {}));
 }
 
 }  // namespace stipple

@@ -38,7 +38,7 @@ std::vector<Handled> HandledBy(const MpiActivity& mpi) {
 }  // namespace
 
 std::vector<SmallMessages> SmallMessagesOf(const Trace& trace, const MpiActivity& mpi,
-                                           const std::vector<CallWait>& waits,
+                                           std::span<const CallWait> waits,
                                            const Selection& selection) {
   const std::vector<Handled> handled = HandledBy(mpi);
   std::map<int, SmallMessages> by_rank;

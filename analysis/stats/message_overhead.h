@@ -9,6 +9,7 @@
 #define STIPPLE_ANALYSIS_STATS_MESSAGE_OVERHEAD_H
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "analysis/stats/selection.h"
@@ -32,7 +33,7 @@ struct SmallMessages {
 /// The selected ranks that have many, if that takes most of their time in messages and collectives
 /// outside waiting, and at least 1 % of the span.
 std::vector<SmallMessages> SmallMessagesOf(const Trace& trace, const MpiActivity& mpi,
-                                           const std::vector<CallWait>& waits,
+                                           std::span<const CallWait> waits,
                                            const Selection& selection);
 
 }  // namespace stipple

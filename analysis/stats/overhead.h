@@ -8,7 +8,7 @@
 
 #include "analysis/stats/analysis.h"
 #include "analysis/stats/selection.h"
-#include "analysis/stats/tables.h"
+#include "analysis/stats/table.h"
 
 namespace stipple {
 

@@ -8,8 +8,11 @@
 #include <tuple>
 #include <utility>
 
+#include "analysis/stats/callpaths.h"
 #include "analysis/stats/estimate.h"
+#include "analysis/stats/finding_of.h"
 #include "analysis/stats/profile_visitor.h"
+#include "analysis/trace/demangle.h"
 
 namespace stipple {
 namespace {
@@ -119,6 +122,23 @@ Table ProfileTable(const Analysis& analysis, const Selection& selection, bool pe
     table.rows.push_back(std::move(row));
   }
   return table;
+}
+
+TableAnswer ProfileAnswer(const Analysis& analysis, const Selection& selection,
+                          const TableOptions& options) {
+  const bool per_rank = options.per_rank;
+  TableAnswer answer{ProfileTable(analysis, selection, per_rank), "No region was visited."};
+  const auto& rows = answer.table.rows;
+  if (rows.empty()) return per_rank ? answer : SampledProfileAnswer(analysis, selection);
+  double sum = 0;
+  const std::size_t shift = per_rank ? 1 : 0;
+  const std::size_t exclusive = 5 + shift;
+  for (const auto& row : rows) sum += std::get<double>(row[exclusive]);
+  const auto& first = rows.front();
+  const std::string& region = std::get<std::string>(first[shift]);
+  answer.headline = PercentText(std::get<double>(first[exclusive]), sum) +
+                    " of the time is spent in " + ShortName(region) + " itself.";
+  return answer;
 }
 
 }  // namespace stipple

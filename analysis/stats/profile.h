@@ -34,6 +34,10 @@ std::vector<RegionTime> SumOfMains(const Analysis& analysis, const Selection& se
 /// time first; summed over locations, or with `per_rank` one row for each rank and region.
 Table ProfileTable(const Analysis& analysis, const Selection& selection, bool per_rank);
 
+/// The same with a sentence; of a run without events from samples, if there are any.
+TableAnswer ProfileAnswer(const Analysis& analysis, const Selection& selection,
+                          const TableOptions& options);
+
 }  // namespace stipple
 
 #endif

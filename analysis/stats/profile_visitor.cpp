@@ -6,6 +6,13 @@
 
 namespace stipple {
 
+std::vector<std::uint32_t> ProfileVisitor::OpenStack() const {
+  std::vector<std::uint32_t> open;
+  for (const Frame* f = stack_.data(); f++ != hot_.top;)
+    open.push_back(static_cast<std::uint32_t>(f->region - regions_.data()));
+  return open;
+}
+
 /// Ends the frame on top, which has no leave of its own.
 void ProfileVisitor::PopLeft(Hot& hot, std::uint64_t ticks) {
   if (hot.top->region->is_watched != 0)

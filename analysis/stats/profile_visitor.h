@@ -116,6 +116,19 @@ class ProfileVisitor {
     hot_.top->region->exclusive += now - hot_.last;
     while (hot_.top != stack_.data()) hot_.Pop(now);
   }
+  /// For an index of the events, between the parts of a scan (Trace::ScanParts; costs nothing
+  /// else):
+  ///   trace.ScanParts(location, visitor, 64 * 1024, [&](const ScanPosition& at) {
+  ///     index.push_back({at.Place(), visitor.OpenStack(), visitor.IsPlain()});
+  ///   });
+  /// The next events of at.Place() are met at at.now or later with these regions open, outermost
+  /// first, by the process's numbers. Those of contexts that wait are not among them.
+  std::vector<std::uint32_t> OpenStack() const;
+  /// Whether these regions are all that the events to come depend on: no jump point and no other
+  /// context has been seen. Else a scan that begins at the place may see a jump that it cannot
+  /// follow, and must begin further in front.
+  bool IsPlain() const { return points_.IsPlain(); }
+
   /// By region of the process.
   std::span<const RegionTicks> regions() const { return {regions_.data(), regions_.size() - 1}; }
   /// Of regions(); empty if each event had a clock.

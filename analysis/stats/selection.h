@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which part of an archive is asked for: a span of time and some of the ranks.
+// Which part of an archive is asked for: a span of time, some of the ranks, regions and messages.
 #ifndef STIPPLE_ANALYSIS_STATS_SELECTION_H
 #define STIPPLE_ANALYSIS_STATS_SELECTION_H
 
@@ -14,18 +14,50 @@
 
 namespace stipple {
 
+/// First and last of some numbers, both in it.
+struct TagRange {
+  std::int32_t first = 0;
+  std::int32_t last = 0;
+};
+
 struct Selection {
+  static constexpr std::int64_t kNoEnd = std::numeric_limits<std::int64_t>::max();
+
   std::int64_t begin_ns = 0;
-  std::int64_t end_ns = std::numeric_limits<std::int64_t>::max();
-  std::optional<std::vector<int>> ranks;  // sorted; none: all
+  std::int64_t end_ns = kNoEnd;                       // not in it, so that spans side by side share
+                                                      // nothing; kNoEnd: the end of the run, in it
+  std::optional<std::vector<int>> ranks;              // sorted; none: all
+  std::optional<std::vector<std::uint32_t>> regions;  // of the archive, sorted; none: all
+  std::uint64_t least_bytes = 0;                      // of messages; both in it
+  std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max();
+  std::optional<std::vector<TagRange>> tags;  // of messages; none: all
 
   bool HasRank(int rank) const { return !ranks || std::ranges::binary_search(*ranks, rank); }
-  bool HasTime(std::int64_t ns) const { return begin_ns <= ns && ns <= end_ns; }
-  bool WholeTime() const {
-    return begin_ns <= 0 && end_ns == std::numeric_limits<std::int64_t>::max();
+  bool HasTime(std::int64_t ns) const {
+    return begin_ns <= ns && (ns < end_ns || end_ns == kNoEnd);
   }
+  bool HasRegion(std::uint32_t region) const {
+    return !regions || std::ranges::binary_search(*regions, region);
+  }
+  /// Whether a message belongs to it by its size and tag.
+  bool HasMessage(std::uint64_t bytes, std::int32_t tag) const {
+    return least_bytes <= bytes && bytes <= most_bytes &&
+           (!tags || std::ranges::any_of(*tags, [tag](const TagRange& t) {
+             return t.first <= tag && tag <= t.last;
+           }));
+  }
+  bool AllMessages() const {
+    return least_bytes == 0 && most_bytes == std::numeric_limits<std::uint64_t>::max() && !tags;
+  }
+  bool WholeTime() const { return begin_ns <= 0 && end_ns == kNoEnd; }
   /// `ns` moved into the span.
   std::int64_t Clamp(std::int64_t ns) const { return std::clamp(ns, begin_ns, end_ns); }
+};
+
+/// How a statistic is to be laid out as a table.
+struct TableOptions {
+  bool per_rank = false;       // a row for each rank and not the sum; not of tables by rank anyway
+  std::int64_t window_ns = 0;  // of series over time; 0: a round one, about 1/40 of the span
 };
 
 /// Ranks as users write them: "0-3,7,host". Throws InputError for anything else, and for a rank

@@ -3,6 +3,8 @@
 
 #include <map>
 
+#include "analysis/stats/finding_of.h"
+
 namespace stipple {
 
 std::vector<RankStates> StatesOf(const Analysis& analysis, const Selection& selection) {
@@ -50,6 +52,22 @@ Table StatesTable(const std::vector<RankStates>& states) {
                                seconds(s.message_ns), seconds(s.idle_ns)));
   }
   return table;
+}
+
+TableAnswer StatesAnswer(const Analysis& analysis, const Selection& selection,
+                         const TableOptions&) {
+  const std::vector<RankStates> states = StatesOf(analysis, selection);
+  double span = 0;
+  double user = 0;
+  double idle = 0;
+  for (const RankStates& s : states) {
+    span += static_cast<double>(s.SpanNs());
+    user += static_cast<double>(s.user_ns);
+    idle += static_cast<double>(s.idle_ns);
+  }
+  return {StatesTable(states), "The ranks compute " + PercentText(user, span) +
+                                   " of their time and wait for each other " +
+                                   PercentText(idle, span) + "."};
 }
 
 }  // namespace stipple

@@ -31,6 +31,9 @@ std::vector<RankStates> StatesOf(const Analysis& analysis, const Selection& sele
 /// Rows rank, user_s, system_s, message_s, idle_s.
 Table StatesTable(const std::vector<RankStates>& states);
 
+TableAnswer StatesAnswer(const Analysis& analysis, const Selection& selection,
+                         const TableOptions& options);
+
 }  // namespace stipple
 
 #endif

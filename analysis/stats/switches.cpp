@@ -4,14 +4,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <numeric>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "analysis/stats/number.h"
+#include "analysis/stats/time_steps.h"
 #include "analysis/trace/kernel.h"
 
 namespace stipple {
 namespace {
+
+constexpr std::int64_t kStepsInWindow = 4;
 
 /// Of one thread, or of all together.
 struct Switches {
@@ -61,7 +67,7 @@ bool HasSwitches(const Trace& trace, const Location& l, const KernelAccount& acc
 }
 
 Cell CellOf(std::optional<std::int64_t> count) { return count ? Cell(*count) : Cell(); }
-double Seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
+double Seconds(std::int64_t ns) { return static_cast<double>(ns) / 1e9; }
 
 std::vector<Cell> RowFor(const Trace& trace, const Location& l, const Selection& selection,
                          Switches& all) {
@@ -140,6 +146,62 @@ Table SwitchesTable(const Trace& trace, const Selection& selection, std::string&
                             FormatSeconds(Seconds(all.preempted_ns)));
   headline += ".";
   return table;
+}
+
+Table SwitchesOverTimeTable(const Trace& trace, const Selection& selection,
+                            const TableOptions& options) {
+  const TimeSteps steps = StepsOf(trace, selection, options.window_ns, kStepsInWindow);
+  const std::vector<std::int64_t> bounds = steps.Bounds();
+  std::map<std::pair<bool, int>, std::vector<std::uint64_t>> sums;  // hosts last; by bound
+  for (const Location& l : trace.locations()) {
+    if (!selection.HasRank(l.rank) || l.stream->kernel.empty()) continue;
+    const KernelAccount account = ReadKernel(trace, l);
+    if (!HasSwitches(trace, l, account)) continue;
+    std::vector<std::uint64_t>& of_rank = sums[{trace.IsHost(l.rank), l.rank}];
+    of_rank.resize(bounds.size());
+    for (const Absence& a : account.absences) {
+      const auto at = std::ranges::lower_bound(bounds, a.out_ns);
+      if (selection.HasTime(a.out_ns) && at != bounds.end())
+        of_rank[static_cast<std::size_t>(at - bounds.begin())] += a.count;
+    }
+  }
+  for (auto& [rank, of_rank] : sums)
+    std::partial_sum(of_rank.begin(), of_rank.end(), of_rank.begin());
+  Table table{"switches",
+              TableShape::kRows,
+              {{"time_s"}, {"rank"}, {"switches"}, {"switches_per_s"}, {"since_start_per_s"}},
+              {}};
+  const auto at = [&bounds](std::int64_t ns) {
+    return static_cast<std::size_t>(std::ranges::lower_bound(bounds, ns) - bounds.begin());
+  };
+  for (std::size_t row = 0; row < steps.count(); ++row) {
+    const std::int64_t now = steps.At(row);
+    const std::int64_t from = steps.WindowBegin(row);
+    for (const auto& [rank, of_rank] : sums) {
+      // What happened at the very begin is in the first step, too.
+      const auto since = [&, &of_rank = of_rank](std::int64_t ns) {
+        return of_rank[at(now)] - (ns == steps.begin_ns ? 0 : of_rank[at(ns)]);
+      };
+      const auto rate = [&](std::int64_t ns) {
+        return static_cast<double>(since(ns)) / Seconds(now - ns);
+      };
+      table.rows.push_back(RowOf(Seconds(now), std::int64_t{rank.second},
+                                 static_cast<std::int64_t>(since(steps.StepBegin(row))), rate(from),
+                                 rate(steps.begin_ns)));
+    }
+  }
+  return table;
+}
+
+TableAnswer SwitchesAnswer(const Analysis& analysis, const Selection& selection,
+                           const TableOptions& options) {
+  TableAnswer answer;
+  answer.table = SwitchesTable(analysis.trace, selection, answer.headline);
+  if (options.window_ns == 0) return answer;
+  answer.table = SwitchesOverTimeTable(analysis.trace, selection, options);
+  if (answer.table.rows.empty())
+    answer.headline = "When threads were switched was not recorded (stipple run --switches).";
+  return answer;
 }
 
 }  // namespace stipple

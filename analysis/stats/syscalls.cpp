@@ -160,4 +160,11 @@ Table SystemCallsTable(const Trace& trace, const Selection& selection, bool per_
   return table;
 }
 
+TableAnswer SystemCallsAnswer(const Analysis& analysis, const Selection& selection,
+                              const TableOptions& options) {
+  TableAnswer answer;
+  answer.table = SystemCallsTable(analysis.trace, selection, options.per_rank, answer.headline);
+  return answer;
+}
+
 }  // namespace stipple

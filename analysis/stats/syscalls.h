@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "analysis/stats/analysis.h"
 #include "analysis/stats/selection.h"
 #include "analysis/stats/table.h"
 #include "analysis/trace/trace.h"
@@ -16,6 +17,9 @@ namespace stipple {
 /// those that reads and writes moved; none for other calls. `headline` says it in a sentence.
 Table SystemCallsTable(const Trace& trace, const Selection& selection, bool per_rank,
                        std::string& headline);
+
+TableAnswer SystemCallsAnswer(const Analysis& analysis, const Selection& selection,
+                              const TableOptions& options);
 
 }  // namespace stipple
 

@@ -57,6 +57,12 @@ struct Table {
   std::vector<std::vector<Cell>> rows;  // each as long as columns
 };
 
+/// A table and the sentence that says what it shows.
+struct TableAnswer {
+  Table table;
+  std::string headline;
+};
+
 }  // namespace stipple
 
 #endif

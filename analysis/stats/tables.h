@@ -4,7 +4,6 @@
 #define STIPPLE_ANALYSIS_STATS_TABLES_H
 
 #include <span>
-#include <string>
 #include <string_view>
 
 #include "analysis/stats/analysis.h"
@@ -13,20 +12,25 @@
 
 namespace stipple {
 
-/// A table and the sentence that says what it shows.
-struct TableAnswer {
-  Table table;
-  std::string headline;
-};
-
 using TableFunction = TableAnswer (*)(const Analysis& analysis, const Selection& selection,
-                                      bool per_rank);
+                                      const TableOptions& options);
+
+/// What a table can be limited to, or be asked for; what it cannot honour is refused.
+enum Takes : unsigned {
+  kTakesSpan = 1,      // --from, --to
+  kTakesRanks = 2,     // --ranks
+  kTakesRegions = 4,   // --regions
+  kTakesMessages = 8,  // --sizes, --tags
+  kTakesWindow = 16,   // --window: a series over time
+};
+inline constexpr unsigned kTakesPlace = kTakesSpan | kTakesRanks;
 
 struct TableEntry {
   std::string_view name;
   TableFunction make;
   std::string_view description;
-  bool per_rank = false;  // whether it can be asked for by rank; those by rank anyway say no
+  bool per_rank = false;         // whether it can be asked for by rank; those by rank anyway say no
+  unsigned takes = kTakesPlace;  // of Takes
 };
 
 std::span<const TableEntry> TableEntries();

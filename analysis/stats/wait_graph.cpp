@@ -6,7 +6,7 @@
 namespace stipple {
 
 WaitGraph::WaitGraph(const Trace& trace, const MpiActivity& mpi,
-                     const std::vector<CallWait>& waits) {
+                     std::span<const CallWait> waits) {
   int rank_end = trace.RankCount();
   for (const Location& l : trace.locations()) rank_end = std::max(rank_end, l.rank + 1);
   std::vector<std::size_t> count(static_cast<std::size_t>(rank_end) + 1);

@@ -31,7 +31,7 @@ struct WaitSpan {
 
 class WaitGraph {
  public:
-  WaitGraph(const Trace& trace, const MpiActivity& mpi, const std::vector<CallWait>& waits);
+  WaitGraph(const Trace& trace, const MpiActivity& mpi, std::span<const CallWait> waits);
 
   /// Ranks are below this.
   int RankEnd() const { return static_cast<int>(first_.size()) - 1; }

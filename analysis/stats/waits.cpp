@@ -7,37 +7,11 @@
 #include <span>
 #include <string>
 
+#include "analysis/stats/collective_needs.h"
 #include "analysis/trace/ranks.h"
 
 namespace stipple {
 namespace {
-
-/// Whom a rank needs in a collective.
-enum class Needs { kAll, kRoot, kAllAtRoot, kLowerRanks };
-
-struct CollectiveEntry {
-  std::string_view name;  // without "MPI_"; the I-form too
-  Needs needs;
-};
-constexpr CollectiveEntry kCollectives[] = {
-    {"Bcast", Needs::kRoot},       {"Scatter", Needs::kRoot},     {"Scatterv", Needs::kRoot},
-    {"Reduce", Needs::kAllAtRoot}, {"Gather", Needs::kAllAtRoot}, {"Gatherv", Needs::kAllAtRoot},
-    {"Scan", Needs::kLowerRanks},  {"Exscan", Needs::kLowerRanks}};
-
-/// "MPI_Ireduce" -> "Reduce"
-std::string PlainName(std::string_view region) {
-  std::string name(region.substr(0, 4) == "MPI_" ? region.substr(4) : region);
-  if (name.size() > 2 && name[0] == 'I' && name[1] >= 'a' && name[1] <= 'z') {
-    name.erase(0, 1);
-    name[0] = static_cast<char>(name[0] - 'a' + 'A');
-  }
-  return name;
-}
-
-Needs NeedsOf(const std::string& plain_name) {
-  const auto* entry = std::ranges::find(kCollectives, plain_name, &CollectiveEntry::name);
-  return entry == std::end(kCollectives) ? Needs::kAll : entry->needs;
-}
 
 /// Finds the wait of each call.
 class WaitFinder {
@@ -104,7 +78,7 @@ class WaitFinder {
   }
 
   void Collective(std::span<const CollectiveEvent> members) {
-    const std::string name = PlainName(trace_.regions()[members.front().region].name);
+    const std::string name = PlainCallName(trace_.regions()[members.front().region].name);
     const WaitKind kind = name == "Barrier"    ? WaitKind::kBarrier
                           : name == "Finalize" ? WaitKind::kEndImbalance
                                                : WaitKind::kCollective;

@@ -33,6 +33,7 @@ int RunPrint(const Arguments& arguments);
 int RunStats(const Arguments& arguments);
 int RunReport(const Arguments& arguments);
 int RunCompact(const Arguments& arguments);
+int RunView(const Arguments& arguments);
 int RunExemplar(const Arguments& arguments);
 
 /// An option was not understood: exit 2.

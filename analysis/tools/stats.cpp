@@ -62,7 +62,7 @@ int RunStats(const Arguments& arguments) {
   const Trace trace = Trace::Open(archive, progress.meter());
   const Selection selection = selected.For(trace);
   const Analysis analysis(trace);
-  const TableAnswer answer = entry.make(analysis, selection, per_rank);
+  const TableAnswer answer = entry.make(analysis, selection, TableOptions{per_rank, 0});
   progress.Stop();
   const bool empty = trace.EventCount() == 0;
   if (form.name == "text")

@@ -69,17 +69,36 @@ class ChunkWords {
   Chunk chunk_;
 };
 
+/// Where a scan can be taken up again, in a few words that can be kept: a scan from here meets the
+/// same events with the same times. What a visitor had gathered is the visitor's matter: see
+/// ProfileVisitor::OpenStack.
+struct ScanPlace {
+  std::uint64_t chunk = 0;
+  std::uint64_t words = 0;  // of the chunk that are behind
+  std::uint64_t now = 0;
+  std::uint64_t step = 0;
+  std::uint64_t unclocked = 0;
+};
+
 /// Where a scan stands; a fresh one stands before the first event. It is moved, never copied: what
 /// a visitor is shown may lie in it, until the scan comes to the next chunk.
 struct ScanPosition {
   std::size_t chunk = 0;
-  const EventWord* word = nullptr;  // in `chunk`; null: at its begin
+  const EventWord* word = nullptr;  // in `chunk`; null: the scan has not come to it yet
+  std::uint64_t words_behind = 0;   // of the chunk's words, those before `word`
   std::uint64_t now = 0;            // ticks of the last event
   std::uint64_t step = 0;           // between unclocked events
   std::uint64_t unclocked = 0;      // events left that take a step
   ChunkWords words;
 
   ScanPosition() = default;
+  explicit ScanPosition(const ScanPlace& place)
+      : chunk(place.chunk),
+        words_behind(place.words),
+        now(place.now),
+        step(place.step),
+        unclocked(place.unclocked) {}
+  ScanPlace Place() const { return {chunk, words_behind, now, step, unclocked}; }
   ScanPosition(ScanPosition&&) = default;
   ScanPosition& operator=(ScanPosition&&) = default;
 };
@@ -188,7 +207,8 @@ bool ScanSome(const ThreadStream& thread, std::uint32_t region_count, std::uint6
   const std::uint64_t limit =
       at.chunk + 1 < thread.chunks.size() ? thread.chunks[at.chunk + 1].ticks : thread.end_limit;
   const EventWord* const end = WrittenEnd(chunk);
-  const EventWord* w = at.word == nullptr ? chunk.begin : at.word;
+  const EventWord* w =
+      chunk.begin + std::min(at.words_behind, static_cast<std::uint64_t>(end - chunk.begin));
   const EventWord* const stop = w + std::min(static_cast<std::uint64_t>(end - w), budget);
   std::uint64_t now = at.now > chunk.ticks ? at.now : chunk.ticks;
   std::uint64_t step = at.step;
@@ -255,20 +275,27 @@ bool ScanSome(const ThreadStream& thread, std::uint32_t region_count, std::uint6
   const bool more = w < end;
   at.chunk += more ? 0 : 1;
   at.word = more ? w : nullptr;
+  at.words_behind = more ? static_cast<std::uint64_t>(w - chunk.begin) : 0;
   at.now = now;
   at.step = more ? step : 0;
   at.unclocked = more ? unclocked : 0;
   return true;
 }
 
-/// Scans the whole thread; `chunk_done(bytes)` is called behind each chunk.
-template <class Visitor, class ChunkDone>
+/// Scans the whole thread; `chunk_done(bytes)` is called behind each chunk, `part_done(at)` behind
+/// each chunk and within it behind every `part_words` words or so. Between parts nothing of the
+/// visitor is in registers: it can be asked for what it knows.
+template <class Visitor, class ChunkDone, class PartDone>
+// NOLINTNEXTLINE(readability-function-size): what is read, who is told of what.
 ScanCounts ScanThread(const ThreadStream& thread, std::uint32_t region_count, Visitor& visitor,
-                      ChunkDone&& chunk_done) {
+                      ChunkDone&& chunk_done, std::uint64_t part_words, PartDone&& part_done) {
   ScanCounts counts;
   ScanPosition at;
   for (const Chunk& chunk : thread.chunks) {
-    ScanSome(thread, region_count, kNoTickLimit, at, counts, visitor);
+    do {
+      ScanSome(thread, region_count, part_words, at, counts, visitor);
+      part_done(static_cast<const ScanPosition&>(at));
+    } while (at.word != nullptr);
     chunk_done(chunk.Bytes());
   }
   return counts;

@@ -225,7 +225,7 @@ TEST(States, SumToTheSpanAndIdleEndsWhenThePartnerArrives) {
 
 TEST(Waits, NameTheCulpritAndWhereItWas) {
   const Written w(LateSender());
-  const Table table = TableEntries()[4].make(Analysis(w.trace), {}, false).table;
+  const Table table = TableEntries()[4].make(Analysis(w.trace), {}, {}).table;
   ASSERT_EQ(table.rows.size(), 2U);
   EXPECT_EQ(std::get<std::string>(table.rows[0][0]), "late-sender");
   EXPECT_EQ(Number(table.rows[0][1]), 1);
@@ -371,13 +371,13 @@ TEST(Jobs, AreKeptApartAndMatchedEach) {
 TEST(Imbalance, IsOneObjectWithTheCauseOrNone) {
   const Written late(LateSender());
   const TableEntry& entry = *std::ranges::find(TableEntries(), "imbalance", &TableEntry::name);
-  const Table table = entry.make(Analysis(late.trace), {}, false).table;
+  const Table table = entry.make(Analysis(late.trace), {}, {}).table;
   EXPECT_EQ(std::get<std::string>(table.rows[0][2]), "late-sender");
   EXPECT_EQ(TableJson(table).substr(0, 17), "{\"max_over_mean\":");
   std::vector<Rank> ranks{Rank(0, 2), Rank(1, 2)};
   for (Rank& r : ranks) r.End(4000);
   const Written even(ranks);
-  const Table healthy = entry.make(Analysis(even.trace), {}, false).table;
+  const Table healthy = entry.make(Analysis(even.trace), {}, {}).table;
   EXPECT_EQ(std::get<std::string>(healthy.rows[0][2]), "none");
   EXPECT_EQ(Number(healthy.rows[0][1]), 0);
 }
@@ -405,7 +405,7 @@ TEST(Tables, EachNameOccursOnceAndWorksOnAnEmptyArchive) {
   std::map<std::string_view, int> names;
   for (const TableEntry& entry : TableEntries()) {
     EXPECT_EQ(++names[entry.name], 1);
-    const Table table = entry.make(Analysis(trace), {}, false).table;
+    const Table table = entry.make(Analysis(trace), {}, {}).table;
     EXPECT_EQ(table.name, entry.name);
     EXPECT_TRUE(table.rows.empty()) << entry.name;
   }

@@ -110,7 +110,7 @@ void ReadAll(const TemporaryArchive& archive, int round) {
     const Location* l = trace.MainOf(s.rank);
     Require(s.SpanNs() == l->end_ns - l->begin_ns, "states do not sum to the span", round);
   }
-  for (const TableEntry& entry : TableEntries()) (void)entry.make(analysis, {}, false);
+  for (const TableEntry& entry : TableEntries()) (void)entry.make(analysis, {}, {});
   (void)TimelineOf(analysis, 0, static_cast<double>(trace.SpanNs()) * 1e-9, 100);
 }
 
