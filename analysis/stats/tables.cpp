@@ -26,8 +26,7 @@ TableAnswer Overhead(const Analysis& analysis, const Selection& selection, const
 }
 
 TableAnswer Waits(const Analysis& analysis, const Selection& selection, const TableOptions&) {
-  const std::vector<Blame> blames =
-      BlameOf(analysis.trace, analysis.mpi, analysis.waits, selection);
+  const std::vector<Blame> blames = BlameOf(analysis, selection);
   const Finding finding = FindingOf(analysis, selection, blames);
   return {WaitsTable(analysis.trace, blames), finding.sentence};
 }
@@ -37,8 +36,7 @@ TableAnswer Imbalance(const Analysis& analysis, const Selection& selection, cons
               TableShape::kObject,
               {{"max_over_mean"}, {"idle_share"}, {"cause"}, {"sentence"}},
               {}};
-  const std::vector<Blame> blames =
-      BlameOf(analysis.trace, analysis.mpi, analysis.waits, selection);
+  const std::vector<Blame> blames = BlameOf(analysis, selection);
   const Finding f = FindingOf(analysis, selection, blames);
   if (!analysis.trace.locations().empty())
     table.rows.push_back({f.max_over_mean, f.idle_share, f.cause, f.sentence});

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Runs programs with a planted cause and compares what `stipple stats` says of them with the table of expectations.
-#   check.sh STIPPLE PROGRAM_DIR [--runs N] [--strength S] [--load N] [--keep DIR] [PROGRAM...]
+#   check.sh STIPPLE PROGRAM_DIR [--runs N] [--strength S] [--load N] [--keep DIR | --again DIR] [PROGRAM...]
 # All programs by default. --strength: how much of the planted cause; --load: so many processes spin meanwhile; --keep:
-# the last archive of each program.
+# the archives, as PROGRAM.N.stipple; --again: judges kept ones.
 # A line a run: verdict, program, cause, kind, culprit and region; how much of the time was waited (idle), and the shares
 # of the waiting that the first and the second culprit have (first, second). A last line counts; exit status 1 if
 # something else was named than what was planted.
@@ -12,12 +12,13 @@ export LC_ALL=C
 here=$(dirname "$(realpath "$0")")
 stipple=$1 programs=$2
 shift 2
-runs=1 strength=1 load=0 keep=
+runs=1 strength=1 load=0 keep= again=
 while [[ ${1-} == --* ]]; do
   case $1 in
     --runs) runs=$2 ;;
     --strength) strength=$2 ;;
     --load) load=$2 ;;
+    --again) again=$(realpath "$2") ;;
     --keep) keep=$(realpath -m "$2") ;;
     *) echo "check.sh: unknown option $1" >&2; exit 2 ;;
   esac
@@ -32,13 +33,20 @@ for ((i = 0; i < load; ++i)); do
   spinning+=($!)
 done
 . "$here/../mpi_environment.sh"
-archive=$work/a.stipple
+[ -z "$keep" ] || mkdir -p "$keep"
 
-# record PROGRAM RANKS; no ranks: it is no MPI program.
+# record PROGRAM RANKS RUN; no ranks: it is no MPI program.
 record() {
   local launcher=()
+  archive=$work/a.stipple
+  [ -z "$keep" ] || archive=$keep/$1.$3.stipple
+  if [ -n "$again" ]; then
+    archive=$again/$1.$3.stipple
+    return 0
+  fi
   (($2 == 0)) || launcher=(mpirun --oversubscribe -n "$2")
-  "$stipple" run --overwrite -o "$archive" -- "${launcher[@]}" "$programs/$1" "$strength" < /dev/null 2> "$work/messages" || { cat "$work/messages" >&2; return 1; }
+  "$stipple" run --overwrite -o "$archive" -- "${launcher[@]}" "$programs/$1" "$strength" \
+    < /dev/null 2> "$work/messages" || { cat "$work/messages" >&2; return 1; }
 }
 
 # one_of VALUE WANTED: `*` is anything, `|` between what is allowed.
@@ -75,13 +83,8 @@ while read -r program ranks cause kind culprit region; do
   [[ $program == \#* || $wanted != "  " && $wanted != *" $program "* ]] && continue
   right=1
   for ((run = 0; run < runs; ++run)); do
-    record "$program" "$ranks"
+    record "$program" "$ranks" $run
     judge "$program" "$cause" "$kind" "$culprit" "$region" || right=0
-    if [ -n "$keep" ]; then
-      mkdir -p "$keep"
-      rm -rf "$keep/$program.stipple"
-      cp -r "$archive" "$keep/$program.stipple"
-    fi
   done
   if [ "$cause" = none ]; then
     healthy=$((healthy + 1)) left=$((left + right))
