@@ -7,37 +7,11 @@
 #include <span>
 #include <string>
 
+#include "analysis/stats/collective_needs.h"
 #include "analysis/trace/ranks.h"
 
 namespace stipple {
 namespace {
-
-/// Whom a rank needs in a collective.
-enum class Needs { kAll, kRoot, kAllAtRoot, kLowerRanks };
-
-struct CollectiveEntry {
-  std::string_view name;  // without "MPI_"; the I-form too
-  Needs needs;
-};
-constexpr CollectiveEntry kCollectives[] = {
-    {"Bcast", Needs::kRoot},       {"Scatter", Needs::kRoot},     {"Scatterv", Needs::kRoot},
-    {"Reduce", Needs::kAllAtRoot}, {"Gather", Needs::kAllAtRoot}, {"Gatherv", Needs::kAllAtRoot},
-    {"Scan", Needs::kLowerRanks},  {"Exscan", Needs::kLowerRanks}};
-
-/// "MPI_Ireduce" -> "Reduce"
-std::string PlainName(std::string_view region) {
-  std::string name(region.substr(0, 4) == "MPI_" ? region.substr(4) : region);
-  if (name.size() > 2 && name[0] == 'I' && name[1] >= 'a' && name[1] <= 'z') {
-    name.erase(0, 1);
-    name[0] = static_cast<char>(name[0] - 'a' + 'A');
-  }
-  return name;
-}
-
-Needs NeedsOf(const std::string& plain_name) {
-  const auto* entry = std::ranges::find(kCollectives, plain_name, &CollectiveEntry::name);
-  return entry == std::end(kCollectives) ? Needs::kAll : entry->needs;
-}
 
 /// Finds the wait of each call.
 class WaitFinder {
@@ -50,6 +24,7 @@ class WaitFinder {
     Probes();
     Collectives();
     Finalize();
+    Locks();
     EndOfRun();
     return std::move(waits_);
   }
@@ -103,7 +78,7 @@ class WaitFinder {
   }
 
   void Collective(std::span<const CollectiveEvent> members) {
-    const std::string name = PlainName(trace_.regions()[members.front().region].name);
+    const std::string name = PlainCallName(trace_.regions()[members.front().region].name);
     const WaitKind kind = name == "Barrier"    ? WaitKind::kBarrier
                           : name == "Finalize" ? WaitKind::kEndImbalance
                                                : WaitKind::kCollective;
@@ -115,7 +90,8 @@ class WaitFinder {
     for (const CollectiveEvent* m : by_entry)
       if (m->rank == m->root) roots.push_back(m);
     for (const CollectiveEvent& m : members) {
-      if (needs == Needs::kAll || (needs == Needs::kAllAtRoot && m.rank == m.root)) {
+      // What the root needs is collected along a tree: others, too, may have had to wait for some.
+      if (needs == Needs::kAll || needs == Needs::kAllAtRoot) {
         WaitForLast(m, by_entry, kind);
       } else if (needs == Needs::kRoot) {
         WaitForLast(m, roots, kind);
@@ -139,6 +115,42 @@ class WaitFinder {
       Collective({mpi_.collectives.data() + begin, end - begin});
       begin = end;
     }
+  }
+
+  /// A lock that somebody has is waited for until he unlocks. Which window a call is about was not
+  /// recorded; that another's lock was released just then by chance is told by nothing, but only a
+  /// call that waited is long enough for it.
+  void Locks() {
+    std::map<int, std::vector<std::pair<std::int64_t, std::int32_t>>> unlocks;  // by job
+    for (const std::uint32_t c : CallsOf("MPI_Win_unlock"))
+      unlocks[JobOf(c)].emplace_back(mpi_.calls[c].begin_ns, RankOf(c));
+    for (auto& [job, times] : unlocks) std::ranges::sort(times);
+    if (unlocks.empty()) return;
+    for (const std::uint32_t c : CallsOf("MPI_Win_lock")) {
+      const MpiCall& call = mpi_.calls[c];
+      const auto& times = unlocks[JobOf(c)];
+      const auto after = std::ranges::upper_bound(times, std::pair(call.end_ns, std::int32_t{0}));
+      if (after == times.begin() || std::prev(after)->first <= call.begin_ns) continue;
+      Wait(c, std::prev(after)->second, std::prev(after)->first, WaitKind::kSerialisation);
+    }
+  }
+
+  /// Those of MPI ranks.
+  std::vector<std::uint32_t> CallsOf(std::string_view name) const {
+    std::vector<std::uint32_t> calls;
+    const auto region = std::ranges::find(trace_.regions(), name, &Region::name);
+    if (region == trace_.regions().end()) return calls;
+    const auto index = static_cast<std::uint32_t>(region - trace_.regions().begin());
+    for (std::uint32_t c = 0; c < mpi_.calls.size(); ++c)
+      if (mpi_.calls[c].region == index &&
+          trace_.ProcessOf(trace_.locations()[mpi_.calls[c].location]).in_world)
+        calls.push_back(c);
+    return calls;
+  }
+
+  /// First rank of the run that the call belongs to.
+  int JobOf(std::uint32_t call) const {
+    return FirstRankOf(trace_.ProcessOf(trace_.locations()[mpi_.calls[call].location]));
   }
 
   /// The end of MPI is entered by all before any leaves it.
