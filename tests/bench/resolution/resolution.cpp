@@ -51,15 +51,15 @@ void Normalise(Shares& shares) {
   for (double& s : shares) s = sum > 0 ? s / sum : 0;
 }
 
-/// 0: alike; 1: nothing in common, or nothing known.
+bool SaysNothing(const Shares& shares) {
+  return std::ranges::all_of(shares, [](double s) { return s <= 0; });
+}
+
+/// 0: alike; 1: nothing in common, or `a` says nothing.
 double Distance(const Shares& a, const Shares& b) {
   double sum = 0;
-  double known = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    sum += std::abs(a[i] - b[i]);
-    known += a[i];
-  }
-  return known > 0 ? sum / 2 : 1;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += std::abs(a[i] - b[i]);
+  return SaysNothing(a) ? 1 : sum / 2;
 }
 
 struct Window {
@@ -262,13 +262,17 @@ class Resolution {
   Figure Compare(const std::string& method, const std::string& setting, double bytes, double cpu_s,
                  const Account& account) const {
     Figure f{method, setting, bytes, cpu_s, 0, 0, {}, false};
+    std::size_t windows = 0;  // in which the rank was there
     for (std::size_t r = 0; r < ranks_.size(); ++r) {
       f.states +=
           Distance(account.states[r], exact_.states[r]) / static_cast<double>(ranks_.size());
-      for (std::size_t w = 0; w < kWindows; ++w)
-        f.windows += Distance(account.in_windows[w][r], exact_.in_windows[w][r]) /
-                     static_cast<double>(kWindows * ranks_.size());
+      for (std::size_t w = 0; w < kWindows; ++w) {
+        if (SaysNothing(exact_.in_windows[w][r])) continue;
+        ++windows;
+        f.windows += Distance(account.in_windows[w][r], exact_.in_windows[w][r]);
+      }
     }
+    f.windows /= static_cast<double>(std::max<std::size_t>(windows, 1));
     if (!account.profile.empty()) f.profile = Distance(account.profile, exact_.profile);
     f.is_named = MostWork(account) == culprit_;
     return f;
