@@ -21,6 +21,7 @@ constexpr Command kCommands[] = {
     {"print", RunPrint, "events as text"},
     {"stats", RunStats, "a table: profile, states, messages, volume, waits"},
     {"report", RunReport, "a self-contained HTML page"},
+    {"watch", RunWatch, "a run that is still going, page after page"},
     {"compact", RunCompact, "make an archive smaller"},
     {"exemplar", RunExemplar, "the ray tracer's experiments: charts on a page"},
 };
