@@ -11,6 +11,8 @@
 #include "analysis/stats/finding_of.h"
 #include "analysis/stats/message_load.h"
 #include "analysis/stats/message_matrix.h"
+#include "analysis/stats/message_waits.h"
+#include "analysis/stats/number.h"
 #include "analysis/stats/overhead.h"
 #include "analysis/stats/profile.h"
 #include "analysis/stats/states.h"
@@ -26,9 +28,16 @@ TableAnswer Overhead(const Analysis& analysis, const Selection& selection, const
 }
 
 TableAnswer Waits(const Analysis& analysis, const Selection& selection, const TableOptions&) {
-  const std::vector<Blame> blames = BlameOf(analysis, selection);
-  const Finding finding = FindingOf(analysis, selection, blames);
-  return {WaitsTable(analysis.trace, blames), finding.sentence};
+  const std::vector<Blame> blames = SelectedBlame(analysis, selection);
+  std::string headline;
+  if (selection.AllMessages()) {
+    headline = FindingOf(analysis, selection, blames).sentence;
+  } else {
+    double seconds = 0;
+    for (const Blame& b : blames) seconds += b.seconds;
+    headline = "Ranks waited " + FormatSeconds(seconds) + " for such messages, summed over them.";
+  }
+  return {WaitsTable(analysis.trace, blames), std::move(headline)};
 }
 
 TableAnswer Imbalance(const Analysis& analysis, const Selection& selection, const TableOptions&) {
@@ -55,7 +64,8 @@ constexpr std::array kTables = {
                "how many messages each rank sent to each (sender = row)", false, kPlaceAndMessages},
     TableEntry{"volume", VolumeAnswer, "how many bytes each rank sent to each (sender = row)",
                false, kPlaceAndMessages},
-    TableEntry{"waits", Waits, "who waited for whom, why, and what the late rank was doing"},
+    TableEntry{"waits", Waits, "who waited for whom, why, and what the late rank was doing", false,
+               kPlaceAndMessages},
     TableEntry{"imbalance", Imbalance, "how unevenly the ranks compute, what it costs and why"},
     TableEntry{"callpaths", CallPathsAnswer, "time, calls and messages per chain of calls, a tree",
                false, kPlaceAndRegions},
@@ -77,7 +87,8 @@ constexpr std::array kTables = {
     TableEntry{"types", TypesAnswer, "messages by tag", true, kPlaceAndMessages},
     TableEntry{"utilisation", UtilisationAnswer, "how much the nodes compute, over time", true,
                kPlaceAndWindow},
-    TableEntry{"wait", WaitMatrixAnswer, "seconds that each rank (row) waited for each"}};
+    TableEntry{"wait", WaitMatrixAnswer, "seconds that each rank (row) waited for each", false,
+               kPlaceAndMessages}};
 
 }  // namespace
 
