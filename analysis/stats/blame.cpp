@@ -230,6 +230,10 @@ Table WaitsTable(const Trace& trace, const std::vector<Blame>& blames) {
     table.rows.push_back(RowOf(std::string(NameOf(b.kind)), std::int64_t{b.waiter},
                                std::int64_t{b.culprit}, b.seconds,
                                b.region == 0 ? Cell() : Cell(trace.regions()[b.region].name)));
+  // Nothing is lost while a host waits for requests.
+  std::ranges::stable_partition(table.rows, [&trace](const std::vector<Cell>& row) {
+    return !trace.IsHost(static_cast<int>(std::get<std::int64_t>(row[1])));
+  });
   return table;
 }
 

@@ -24,6 +24,7 @@ class WaitFinder {
     Probes();
     Collectives();
     Finalize();
+    Locks();
     EndOfRun();
     return std::move(waits_);
   }
@@ -89,7 +90,8 @@ class WaitFinder {
     for (const CollectiveEvent* m : by_entry)
       if (m->rank == m->root) roots.push_back(m);
     for (const CollectiveEvent& m : members) {
-      if (needs == Needs::kAll || (needs == Needs::kAllAtRoot && m.rank == m.root)) {
+      // What the root needs is collected along a tree: others, too, may have had to wait for some.
+      if (needs == Needs::kAll || needs == Needs::kAllAtRoot) {
         WaitForLast(m, by_entry, kind);
       } else if (needs == Needs::kRoot) {
         WaitForLast(m, roots, kind);
@@ -113,6 +115,42 @@ class WaitFinder {
       Collective({mpi_.collectives.data() + begin, end - begin});
       begin = end;
     }
+  }
+
+  /// A lock that somebody has is waited for until he unlocks. Which window a call is about was not
+  /// recorded; that another's lock was released just then by chance is told by nothing, but only a
+  /// call that waited is long enough for it.
+  void Locks() {
+    std::map<int, std::vector<std::pair<std::int64_t, std::int32_t>>> unlocks;  // by job
+    for (const std::uint32_t c : CallsOf("MPI_Win_unlock"))
+      unlocks[JobOf(c)].emplace_back(mpi_.calls[c].begin_ns, RankOf(c));
+    for (auto& [job, times] : unlocks) std::ranges::sort(times);
+    if (unlocks.empty()) return;
+    for (const std::uint32_t c : CallsOf("MPI_Win_lock")) {
+      const MpiCall& call = mpi_.calls[c];
+      const auto& times = unlocks[JobOf(c)];
+      const auto after = std::ranges::upper_bound(times, std::pair(call.end_ns, std::int32_t{0}));
+      if (after == times.begin() || std::prev(after)->first <= call.begin_ns) continue;
+      Wait(c, std::prev(after)->second, std::prev(after)->first, WaitKind::kSerialisation);
+    }
+  }
+
+  /// Those of MPI ranks.
+  std::vector<std::uint32_t> CallsOf(std::string_view name) const {
+    std::vector<std::uint32_t> calls;
+    const auto region = std::ranges::find(trace_.regions(), name, &Region::name);
+    if (region == trace_.regions().end()) return calls;
+    const auto index = static_cast<std::uint32_t>(region - trace_.regions().begin());
+    for (std::uint32_t c = 0; c < mpi_.calls.size(); ++c)
+      if (mpi_.calls[c].region == index &&
+          trace_.ProcessOf(trace_.locations()[mpi_.calls[c].location]).in_world)
+        calls.push_back(c);
+    return calls;
+  }
+
+  /// First rank of the run that the call belongs to.
+  int JobOf(std::uint32_t call) const {
+    return FirstRankOf(trace_.ProcessOf(trace_.locations()[mpi_.calls[call].location]));
   }
 
   /// The end of MPI is entered by all before any leaves it.

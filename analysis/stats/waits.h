@@ -4,8 +4,8 @@
 // A wait is the part of an MPI call before its partners had arrived: of a receive (or the Wait that
 // completed it, or a Probe) until the send was entered; of a send that did not return before, until
 // the receive was posted; of a collective until the last rank that it needs had entered; of
-// MPI_Finalize until all had. What the call needs follows from what it did: a send that returned
-// before the receive was posted did not wait for it.
+// MPI_Finalize until all had; of MPI_Win_lock until another had unlocked. What the call needs
+// follows from what it did: a send that returned before the receive was posted did not wait for it.
 //
 // Here is found who waited in which call for how long, and for whom directly. Whose fault it was,
 // and the kinds that follow from more than one call, are in blame.h.
