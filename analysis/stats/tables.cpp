@@ -6,14 +6,19 @@
 #include <vector>
 
 #include "analysis/stats/callpaths.h"
+#include "analysis/stats/causes.h"
 #include "analysis/stats/channels.h"
 #include "analysis/stats/counters.h"
+#include "analysis/stats/critical_path.h"
+#include "analysis/stats/efficiency.h"
 #include "analysis/stats/finding_of.h"
+#include "analysis/stats/imbalance_split.h"
 #include "analysis/stats/message_load.h"
 #include "analysis/stats/message_matrix.h"
 #include "analysis/stats/message_waits.h"
 #include "analysis/stats/number.h"
 #include "analysis/stats/overhead.h"
+#include "analysis/stats/phases.h"
 #include "analysis/stats/profile.h"
 #include "analysis/stats/states.h"
 #include "analysis/stats/switches.h"
@@ -52,6 +57,32 @@ TableAnswer Imbalance(const Analysis& analysis, const Selection& selection, cons
   return {std::move(table), f.sentence};
 }
 
+TableAnswer CriticalPath(const Analysis& analysis, const Selection& selection,
+                         const TableOptions&) {
+  const Causes causes = CausesOf(analysis, selection);
+  return {CriticalPathTable(analysis, causes.path_rows, selection),
+          CriticalPathSentence(analysis, causes.path_rows, selection)};
+}
+
+TableAnswer EfficiencyAnswer(const Analysis& analysis, const Selection& selection,
+                             const TableOptions& options) {
+  const Efficiency efficiency = EfficiencyOf(analysis, selection);
+  return {options.per_rank ? EfficiencyByRankTable(efficiency) : EfficiencyTable(efficiency),
+          EfficiencySentence(efficiency)};
+}
+
+TableAnswer Phases(const Analysis& analysis, const Selection& selection, const TableOptions&) {
+  const std::vector<Phase> phases = PhasesOf(analysis, selection);
+  return {PhasesTable(analysis, phases), PhasesSentence(phases)};
+}
+
+TableAnswer ImbalanceSplit(const Analysis& analysis, const Selection& selection,
+                           const TableOptions&) {
+  const Causes causes = CausesOf(analysis, selection);
+  return {ImbalanceSplitTable(analysis.trace, causes.split),
+          ImbalanceSplitSentence(analysis.trace, causes.phases, causes.split)};
+}
+
 constexpr unsigned kPlaceAndRegions = kTakesPlace | kTakesRegions;
 constexpr unsigned kPlaceAndMessages = kTakesPlace | kTakesMessages;
 constexpr unsigned kPlaceAndWindow = kTakesPlace | kTakesWindow;
@@ -71,11 +102,17 @@ constexpr std::array kTables = {
                false, kPlaceAndRegions},
     TableEntry{"counters", CountersAnswer, "values of the program's own counters over time"},
     TableEntry{"channels", ChannelsAnswer, "messages between threads, and who waited for whom"},
+    TableEntry{"critical-path", CriticalPath, "what the length of the run is made of"},
+    TableEntry{"efficiency", EfficiencyAnswer,
+               "how much of the time is useful, and what takes the rest", true},
+    TableEntry{"imbalance-split", ImbalanceSplit,
+               "what makes the busiest rank of each phase the busiest"},
     TableEntry{"load", LoadAnswer, "messages and bytes sent, over time", true,
                kPlaceAndMessages | kTakesWindow},
     TableEntry{"mean-size", MeanSizeAnswer, "bytes per message from each rank to each", false,
                kPlaceAndMessages},
     TableEntry{"overhead", Overhead, "what recording each region cost, and time without it"},
+    TableEntry{"phases", Phases, "parts of the run in which the ranks divide their time alike"},
     TableEntry{"sizes", SizesAnswer, "messages by size, in powers of two", true, kPlaceAndMessages},
     TableEntry{"status", StatusAnswer, "the state of each rank, moment by moment", false,
                kPlaceAndWindow},
