@@ -80,7 +80,8 @@ double ImbalanceOnPath(const Analysis& analysis, const std::vector<PathRow>& row
   for (const Location& l : trace.locations()) {
     if (!l.IsMain() || trace.ProcessOf(l).is_host) continue;
     ++ranks;
-    for (const RegionTime& t : analysis.profiles[l.index]) mean_s[t.region] += t.exclusive_ns * 1e-9;
+    for (const RegionTime& t : analysis.profiles[l.index])
+      mean_s[t.region] += t.exclusive_ns * 1e-9;
   }
   double imbalance_s = 0;
   for (std::size_t r = 1; r < path_s.size() && ranks > 0; ++r)
@@ -110,8 +111,8 @@ std::string CriticalPathSentence(const Analysis& analysis, const std::vector<Pat
   if (length <= 0) return "There is no critical path: the archive holds no time.";
   std::map<std::uint32_t, double> by_region;
   for (const PathRow& r : rows) by_region[r.region] += r.seconds;
-  const auto most = std::ranges::max_element(
-      by_region, {}, &std::map<std::uint32_t, double>::value_type::second);
+  const auto most =
+      std::ranges::max_element(by_region, {}, &std::map<std::uint32_t, double>::value_type::second);
   std::vector<int> ranks;
   for (const PathRow& r : rows)
     if (r.region == most->first && r.seconds >= kNamedShare * most->second) ranks.push_back(r.rank);

@@ -97,7 +97,8 @@ std::vector<std::vector<double>> FeaturesOf(const std::vector<const TimelineRow*
     for (const TimelineRow* row : rows) {
       for (std::size_t s = 0; s < kStateCount; ++s)
         features[s][c] += static_cast<double>(row->columns[c][s]) / count;
-      const auto user = static_cast<double>(row->columns[c][static_cast<std::size_t>(State::kUser)]);
+      const auto user =
+          static_cast<double>(row->columns[c][static_cast<std::size_t>(State::kUser)]);
       squares += user * user / count;
     }
     const double mean = features[static_cast<std::size_t>(State::kUser)][c];
@@ -135,8 +136,8 @@ std::vector<std::size_t> ChangePointsOf(std::span<const std::vector<double>> ser
   const std::size_t count = series.empty() ? 0 : series.front().size();
   if (count < 2) return {0};
   const Distances distances(series);
-  double penalty = kLeastPenalty +
-                   kNoisePenalty * NoiseOf(series, count) * std::log(static_cast<double>(count));
+  double penalty =
+      kLeastPenalty + kNoisePenalty * NoiseOf(series, count) * std::log(static_cast<double>(count));
   std::vector<std::size_t> begins = Optimum(distances, count, penalty);
   while (begins.size() > most_phases) begins = Optimum(distances, count, penalty *= 2);
   return begins;
@@ -154,9 +155,9 @@ std::vector<Phase> PhasesOf(const Analysis& analysis, const Selection& selection
   if (rows.empty()) return {};
   const std::vector<std::size_t> begins = ChangePointsOf(FeaturesOf(rows, columns), kMostPhases);
   const auto time_ns = [&](std::size_t column) {
-    return begin_ns + static_cast<std::int64_t>(static_cast<double>(span_ns) *
-                                                static_cast<double>(column) /
-                                                static_cast<double>(columns));
+    return begin_ns +
+           static_cast<std::int64_t>(static_cast<double>(span_ns) * static_cast<double>(column) /
+                                     static_cast<double>(columns));
   };
   std::vector<Phase> phases;
   for (std::size_t i = 0; i < begins.size(); ++i) {
@@ -180,10 +181,9 @@ Table PhasesTable(const Analysis& analysis, const std::vector<Phase>& phases) {
                {"max_over_mean"},
                {"busiest_rank"}},
               {}};
-  const bool has_system =
-      std::ranges::any_of(analysis.trace.locations(), [&](const Location& l) {
-        return l.IsMain() && HasKernelTime(analysis.trace, l);
-      });
+  const bool has_system = std::ranges::any_of(analysis.trace.locations(), [&](const Location& l) {
+    return l.IsMain() && HasKernelTime(analysis.trace, l);
+  });
   const auto share = [](const Phase& p, State s) { return p.shares[static_cast<std::size_t>(s)]; };
   for (const Phase& p : phases)
     table.rows.push_back(RowOf(static_cast<double>(p.begin_ns) * 1e-9,
