@@ -10,7 +10,7 @@ StateSums::StateSums(const Analysis& analysis, const Location& main,
     : moments_(moments), sums_(moments.size()), states_(moments.size()) {
   // As long as this lasts sums_ holds what lies between a moment and the one before.
   Add(main.begin_ns, main.end_ns, State::kUser, 1);
-  const std::vector<MpiCall>& calls = analysis.mpi.calls;
+  const std::span<const MpiCall> calls(analysis.mpi.calls);
   const auto here = std::ranges::equal_range(calls, main.index, {}, &MpiCall::location);
   for (const MpiCall& call : here) {
     const std::int64_t idle_ns =

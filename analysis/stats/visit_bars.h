@@ -3,9 +3,13 @@
 #ifndef STIPPLE_ANALYSIS_STATS_VISIT_BARS_H
 #define STIPPLE_ANALYSIS_STATS_VISIT_BARS_H
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
+
+#include "analysis/stats/timeline.h"
+#include "analysis/trace/trace.h"
 
 namespace stipple {
 
@@ -19,6 +23,9 @@ struct VisitBars {
   std::vector<std::string> names;           // as people write them: without types
   std::vector<std::vector<VisitBar>> rows;  // as the timeline's; each by begin, outer before inner
 };
+
+/// Visits of the main threads of a period's rows; nothing if there are more than `most`.
+VisitBars VisitBarsOf(const Trace& trace, const Timeline& period, std::size_t most);
 
 }  // namespace stipple
 

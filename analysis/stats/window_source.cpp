@@ -114,8 +114,7 @@ class AnalysisSource : public WindowSource {
                                       Direction direction) const override;
   Table MatrixUntil(std::int64_t time_ns) const override;
   Finding FindFinding() const override {
-    return FindingOf(analysis_, {},
-                     BlameOf(analysis_.trace, analysis_.mpi, analysis_.waits, Selection{}));
+    return FindingOf(analysis_, {}, BlameOf(analysis_, {}));
   }
   Table TableNamed(std::string_view name, bool per_rank) const override;
 

@@ -31,6 +31,7 @@ int RunInfo(const Arguments& arguments);
 int RunCheck(const Arguments& arguments);
 int RunPrint(const Arguments& arguments);
 int RunStats(const Arguments& arguments);
+int RunPlot(const Arguments& arguments);
 int RunReport(const Arguments& arguments);
 int RunCompact(const Arguments& arguments);
 int RunView(const Arguments& arguments);

@@ -20,6 +20,7 @@ constexpr Command kCommands[] = {
     {"check", RunCheck, "prove an archive sound; one line per problem"},
     {"print", RunPrint, "events as text"},
     {"stats", RunStats, "a table: profile, states, messages, volume, waits"},
+    {"plot", RunPlot, "a display of any statistic: SVG, PDF or PNG"},
     {"report", RunReport, "a self-contained HTML page"},
     {"view", RunView, "an interactive window on a run"},
     {"compact", RunCompact, "make an archive smaller"},

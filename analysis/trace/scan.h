@@ -15,9 +15,11 @@
 #define STIPPLE_ANALYSIS_TRACE_SCAN_H
 
 #include <algorithm>
+#include <concepts>
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "analysis/trace/stream.h"
@@ -191,6 +193,30 @@ concept HasCounted = requires(Visitor& visitor, const EventWord* record) {
   visitor.Counted(record, 0U, 0U);
 };
 
+/// Function events in a row that a visitor may take all at once.
+struct PlainEvents {
+  const EventWord* end = nullptr;
+  std::uint64_t offset = 0;  // from the low 40 bits of the time to ticks, for all of them
+  bool is_plain = false;     // else what is before `end` must be taken one by one
+};
+/// What begins at `word` and ends before `stop`: events whose regions are defined and whose times,
+/// all read, do not step back, and are not after `limit`.
+PlainEvents FindPlain(const EventWord* word, const EventWord* stop, std::uint32_t region_count,
+                      std::uint64_t now, std::uint64_t limit);
+
+/// A visitor may take plain events by the block: `Block(words, count, offset)` sees `count` (> 0)
+/// of them, at TimeOf(word) + offset, and returns how many it took; the next one then comes to
+/// Function.
+template <class Visitor>
+concept HasBlocks = requires(Visitor& visitor, const EventWord* words) {
+  { visitor.Block(words, std::size_t{}, std::uint64_t{}) } -> std::same_as<std::size_t>;
+};
+/// A visitor may want to know where chunks begin.
+template <class Visitor>
+concept HasChunks = requires(Visitor& visitor) {
+  visitor.BeginChunk();
+};
+
 /// Scans at least `budget` words from `at` (fewer at the end of a chunk), within one chunk. The
 /// visitor has
 ///   void Function(std::uint32_t region, bool leave, std::uint64_t ticks)   region < region_count
@@ -214,6 +240,9 @@ bool ScanSome(const ThreadStream& thread, std::uint32_t region_count, std::uint6
   std::uint64_t step = at.step;
   std::uint64_t unclocked = at.unclocked;
   std::uint64_t function_events = 0;
+  PlainEvents plain{w, 0, false};
+  if constexpr (HasChunks<Visitor>)
+    if (at.word == nullptr && at.words_behind == 0) visitor.BeginChunk();
   decltype(auto) hot = HotPartOf(visitor);
   const auto known = [&counts, region_count](std::uint32_t region) -> std::uint32_t {
     if (region != 0 && region < region_count) [[likely]]
@@ -222,6 +251,17 @@ bool ScanSome(const ThreadStream& thread, std::uint32_t region_count, std::uint6
     return 0;
   };
   while (w < stop) {
+    if constexpr (HasBlocks<std::remove_reference_t<decltype(hot)>>) {
+      if (w >= plain.end && unclocked == 0) plain = FindPlain(w, stop, region_count, now, limit);
+      if (plain.is_plain && w < plain.end) {
+        const std::size_t taken =
+            hot.Block(w, static_cast<std::size_t>(plain.end - w), plain.offset);
+        w += taken;
+        function_events += taken;
+        if (taken != 0) now = TimeOf(w[-1]) + plain.offset;
+        if (w == plain.end) continue;
+      }
+    }
     EventWord word = *w;
     std::uint32_t region = static_cast<std::uint32_t>(word & kRegionMask);
     const std::uint64_t low = TimeOf(word);

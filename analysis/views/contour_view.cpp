@@ -157,6 +157,17 @@ void Widen(Field& field) {
   field.rows.push_back(field.rows.back());
 }
 
+/// "20\u201340%": as the axis's ticks are written.
+std::string LevelText(const ValueAxis& axis, double from, double to) {
+  std::string text;
+  for (const double value : {from, to}) {
+    std::string number = axis.NumberAt(value);
+    if (!text.empty()) text += "\u2013";
+    text += number;
+  }
+  return text + (axis.scale.unit == "%" || axis.scale.unit.empty() ? "" : " ") + axis.scale.unit;
+}
+
 SeriesColumn FirstByRank(const ViewInput& input) {
   for (SeriesColumn& column : SeriesOf(input))
     if (!column.ranks.empty()) return column;
@@ -188,8 +199,7 @@ Scene ContourView(const ViewInput& input) {
     scene.note = fmt::format("a row: mean of {} ranks", field.grid.ranks_per_row);
   for (std::size_t k = 0; k + 1 < levels.size(); ++k) {
     const int step = k == 0 ? 0 : static_cast<int>(k * kRampSteps / (levels.size() - 2));
-    scene.key.push_back({fmt::format("{}\u2013{}", field.axis.scale.Number(levels[k]),
-                                     field.axis.scale.Text(levels[k + 1])),
+    scene.key.push_back({LevelText(field.axis, levels[k], levels[k + 1]),
                          step == 0 ? kEmptyCell : RampColour(step)});
   }
   scene.layers = {Levels(field, levels), RowLabels(field.grid, field.time.left - 10),

@@ -268,7 +268,7 @@ Scene XyView(const ViewInput& input) {
   const double bottom = top - kPanelGap;
   AddTimeAxis(axis, time, bottom);
   scene.height = std::ceil(bottom + kAxisHeight);
-  scene.title = "Over time";
+  scene.title = panels.size() == 1 ? panels.front().heading + " over time" : "Over time";
   scene.description = "Lines over time: " + scene.description + ".";
   scene.layers = {std::move(grid), std::move(bands), std::move(curves), std::move(words),
                   std::move(axis)};

@@ -90,6 +90,17 @@ std::optional<Place> Find(const ViewInput& input, std::string_view name) {
   return std::nullopt;
 }
 
+/// One value alone stands over the first number that names its rows.
+void AddKey(std::vector<Place>& found) {
+  const Table& table = *found.front().table;
+  for (std::size_t i = 0; i < table.columns.size(); ++i)
+    if (i != found.front().column && !table.rows.empty() &&
+        std::isfinite(NumberOr(table.rows.front()[i]))) {
+      found.insert(found.begin(), {&table, i});
+      return;
+    }
+}
+
 /// What is asked for; else the first two values that there are.
 std::vector<Place> Axes(const ViewInput& input) {
   std::vector<Place> found;
@@ -106,6 +117,7 @@ std::vector<Place> Axes(const ViewInput& input) {
       if (found.size() < 2 && !known) found.push_back({table, column});
     }
   }
+  if (found.size() == 1) AddKey(found);
   return found;
 }
 

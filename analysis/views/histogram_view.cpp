@@ -20,8 +20,20 @@
 namespace stipple {
 namespace {
 
-constexpr double kWidth = 760, kPanelHeight = 170, kPanelGap = 54, kHeading = 24, kBelow = 24;
+constexpr double kWidth = 760, kPanelHeight = 170, kPanelGap = 64, kHeading = 34, kBelow = 24;
 constexpr std::size_t kMostBars = 64, kMostPanels = 8;
+
+/// Ends of classes are powers of two mostly: "64 B", "4 KiB".
+std::string SizeText(double bytes) {
+  constexpr const char* kUnits[] = {"KiB", "MiB", "GiB", "TiB"};
+  double size = bytes / 1024;
+  for (const char* unit : kUnits) {
+    if (size < 1 || size != std::floor(size)) break;
+    if (size < 1024) return fmt::format("{:.0f} {}", size, unit);
+    size /= 1024;
+  }
+  return ValueText(Quantity::kBytes, bytes);
+}
 
 /// One upright bar: where its class ends, or its name.
 struct Bin {
@@ -128,13 +140,12 @@ void AddNames(const PanelPlace& place, const Panel& panel, Layer& layer) {
   };
   for (std::size_t i = 0; i < panel.bins.size(); ++i) {
     if (panel.classes)
-      add(place.XOf(i), ValueText(Quantity::kBytes, panel.bins[i].low));
+      add(place.XOf(i), SizeText(panel.bins[i].low));
     else
       add(place.XOf(i) + place.pitch / 2,
           ShortenEnd(panel.bins[i].name, std::max(60.0, place.pitch - 8), 12));
   }
-  if (panel.classes)
-    add(place.XOf(panel.bins.size()), ValueText(Quantity::kBytes, panel.bins.back().high));
+  if (panel.classes) add(place.XOf(panel.bins.size()), SizeText(panel.bins.back().high));
 }
 
 void AddGrid(const PanelPlace& place, const Panel& panel, Layer& layer) {
@@ -154,7 +165,7 @@ void AddGrid(const PanelPlace& place, const Panel& panel, Layer& layer) {
   const std::string heading =
       panel.heading + (panel.left_out.empty() ? "" : " (" + panel.left_out + ")");
   layer.shapes.emplace_back(
-      TextShape{place.left, place.top - 14, heading, {.size = 13, .colour = kInk, .bold = true}});
+      TextShape{place.left, place.top - 24, heading, {.size = 13, .colour = kInk, .bold = true}});
 }
 
 /// A number above each bar that has room for it.
@@ -169,9 +180,7 @@ void AddBars(const PanelPlace& place, const Panel& panel, std::size_t colour, La
       bars.shapes.emplace_back(
           RectShape{place.XOf(i) + gap / 2, std::min(y, zero), place.pitch - gap,
                     std::fabs(zero - y), ColoursOf("", colour).area,
-                    (panel.classes ? ValueText(Quantity::kBytes, bin.low) + "\u2013" +
-                                         ValueText(Quantity::kBytes, bin.high)
-                                   : bin.name) +
+                    (panel.classes ? SizeText(bin.low) + "\u2013" + SizeText(bin.high) : bin.name) +
                         ": " + text});
     if (bin.value == 0 || TextWidth(text, 11) + 4 > place.pitch) continue;
     numbers.shapes.emplace_back(TextShape{place.XOf(i) + place.pitch / 2,
@@ -216,7 +225,7 @@ Scene HistogramView(const ViewInput& input) {
     top += kPanelHeight + kPanelGap;
   }
   scene.height = std::ceil(top - kPanelGap + kBelow);
-  scene.title = "Histogram";
+  scene.title = "Histogram of " + WordsFor(input.tables.front()->name);
   scene.description = "Histograms: " + scene.description + ".";
   scene.layers = {std::move(grid), std::move(bars), std::move(numbers), std::move(names)};
   return scene;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <utility>
 
@@ -332,7 +333,8 @@ Scene MatrixView(const ViewInput& input) {
   if (scenes.empty()) return {.name = "matrix"};
   std::string title;
   for (const Scene& scene : scenes) title += (title.empty() ? "" : ", ") + scene.title;
-  return SceneGrid("matrix", title + " between ranks", scenes, 2, 40);
+  title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
+  return SceneGrid("matrix", title + " from sender to receiver", scenes, 2, 40);
 }
 
 }  // namespace stipple

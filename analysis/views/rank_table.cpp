@@ -188,7 +188,7 @@ RankTable Grouped(const RankTable& table, std::size_t most, std::size_t& ranks_p
 }
 
 TimelineRow RankNamed(const ViewInput& input, const std::string& cell) {
-  TimelineRow named{CleanUtf8(cell), -1, cell == "host", {}};
+  TimelineRow named{CleanUtf8(cell), kNoRank, cell == "host", {}};
   std::from_chars(cell.data(), cell.data() + cell.size(), named.rank);
   if (input.timeline == nullptr) return named;
   for (const TimelineRow& row : input.timeline->rows)

@@ -42,6 +42,9 @@ RankTable RankTableOf(const ViewInput& input, std::size_t most_columns);
 /// Neighbouring ranks as one, with their mean, until at most `most` are left; the host stays alone.
 RankTable Grouped(const RankTable& table, std::size_t most, std::size_t& ranks_per_group);
 
+/// Of a row that is no rank, or whose number is not known; -1 is "no culprit".
+inline constexpr int kNoRank = -2;
+
 /// A rank's name as rows are labelled: by the timeline's rows, where there is one.
 TimelineRow RankNamed(const ViewInput& input, const std::string& cell);
 

@@ -43,6 +43,11 @@ SeriesColumn ColumnOver(const ViewInput& input, const Table& table, const TableC
   return result;
 }
 
+/// Whether another column says the same per second, whatever the length of a step.
+bool HasRate(const Table& table, std::size_t column) {
+  return ColumnNamed(table, table.columns[column].name + "_per_s").has_value();
+}
+
 }  // namespace
 
 double TimeSeries::At(double time_s) const {
@@ -62,7 +67,8 @@ std::vector<SeriesColumn> SeriesOf(const ViewInput& input) {
     if (table == nullptr || !FitsTime(*table)) continue;
     const TableColumns columns = ColumnsOf(*table);
     for (const std::size_t value : ChosenValues(*table, columns, input.columns))
-      all.push_back(ColumnOver(input, *table, columns, value));
+      if (!input.columns.empty() || !HasRate(*table, value))
+        all.push_back(ColumnOver(input, *table, columns, value));
   }
   return all;
 }

@@ -37,7 +37,8 @@ struct SeriesColumn {
 bool FitsTime(const Table& table);
 bool FitsRanksOverTime(const Table& table);
 
-/// Every column asked for (all if none is) of every table.
+/// Every column asked for, of every table; if none is, all but those that another one has as a
+/// rate.
 std::vector<SeriesColumn> SeriesOf(const ViewInput& input);
 
 /// From the first to the last moment of all lines; the timeline's span where it is given.

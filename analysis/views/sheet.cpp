@@ -74,10 +74,21 @@ struct Head {
   }
 };
 
+/// An archive may lack what a display shows: that is said, it is no error.
+Scene NothingToShow(const Scene& scene) {
+  Scene sheet{.name = scene.name, .width = kLeastWidth, .height = 96, .title = "Nothing to show"};
+  sheet.description = "The archive holds nothing that this display shows.";
+  sheet.layers = {
+      {"head",
+       {TextShape{kMargin, 34, sheet.title, {.size = kTitleSize, .colour = kInk, .bold = true}},
+        TextShape{kMargin, 60, sheet.description, {.size = kTextSize, .colour = kSecondary}}}}};
+  return sheet;
+}
+
 }  // namespace
 
 Scene OnSheet(Scene scene) {
-  if (scene.layers.empty()) return scene;
+  if (scene.layers.empty()) return NothingToShow(scene);
   Head head;
   head.width = std::max(scene.width, kLeastWidth);
   head.AddTitle(scene);

@@ -8,6 +8,7 @@
 
 #include "analysis/views/layout.h"
 #include "analysis/views/palette.h"
+#include "analysis/views/rank_table.h"
 #include "analysis/views/series.h"
 #include "analysis/views/table_reading.h"
 #include "analysis/views/text.h"
@@ -57,7 +58,7 @@ void AddCurve(const Strips& strips, std::size_t row, Colour fill, Layer& layer) 
     area = {{}, fill};
   };
   double x = strips.time.left, last_y = 0;
-  for (const double value : values) {
+  for (const double& value : values) {
     if (std::isnan(value)) {
       finish(x);
     } else {
@@ -134,7 +135,7 @@ SeriesColumn ColumnFor(const ViewInput& input) {
   for (const SeriesColumn& column : all) {
     if (column.quantity != rows.quantity || column.table != rows.table || column.lines.empty())
       continue;
-    rows.ranks.push_back({WordsFor(column.column), -1, false, {}});
+    rows.ranks.push_back({WordsFor(column.column), kNoRank, false, {}});
     rows.lines.push_back(column.lines.front());
   }
   rows.column.clear();

@@ -68,7 +68,7 @@ RankTable NamedRows(const ViewInput& input) {
                                : "host");
       name = name + " \u00b7 " + rank.name;
     }
-    result.ranks.push_back({ShortName(name), -1, false, {}});
+    result.ranks.push_back({ShortName(name), kNoRank, false, {}});
   }
   for (const std::size_t value : values) {
     RankColumn& column = result.columns.emplace_back();

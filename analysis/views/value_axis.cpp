@@ -14,15 +14,6 @@ namespace {
 constexpr double kLargest = 1e300;    // sums of two ends stay finite
 constexpr double kSmallest = 1e-290;  // below it there is nothing to see
 
-/// A tick's number in the axis's unit, with as many decimals as the step has.
-std::string TickNumber(const ValueAxis& axis, double value) {
-  const double step = axis.step / axis.scale.size, number = value / axis.scale.size;
-  const double size = std::max(std::fabs(axis.most), std::fabs(axis.least)) / axis.scale.size;
-  if (size >= 9999.5 || step < 0.0009) return axis.scale.Number(value);
-  const int decimals = std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9)));
-  return fmt::format("{:.{}f}", number + 0.0, decimals);
-}
-
 }  // namespace
 
 void ValueRange::Add(double value) {
@@ -37,12 +28,21 @@ double ValueAxis::ShareOf(double value) const {
   return std::clamp((std::clamp(value, -kLargest, kLargest) - least) / (most - least), 0.0, 1.0);
 }
 
+std::string ValueAxis::NumberAt(double value) const {
+  if (std::fabs(value) < step * 1e-9) return "0";
+  const double each = step / scale.size;
+  const double largest = std::max(std::fabs(most), std::fabs(least)) / scale.size;
+  if (largest >= 9999.5 || each < 0.0009) return scale.Number(value);
+  const int decimals = std::max(0, -static_cast<int>(std::floor(std::log10(each) + 1e-9)));
+  return fmt::format("{:.{}f}", value / scale.size, decimals);
+}
+
 std::vector<ValueTick> ValueAxis::Ticks() const {
   std::vector<ValueTick> ticks;
   const auto first = std::llround(least / step), last = std::llround(most / step);
   for (auto i = first; i <= last; ++i) {
     const double value = i == 0 ? 0 : static_cast<double>(i) * step;
-    ticks.push_back({value, i == 0 ? "0" : TickNumber(*this, value)});
+    ticks.push_back({value, NumberAt(value)});
   }
   if (!ticks.empty() && !scale.unit.empty())
     ticks.back().label += (scale.unit == "%" ? "" : " ") + scale.unit;

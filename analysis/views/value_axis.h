@@ -21,6 +21,8 @@ struct ValueAxis {
 
   /// Place along the axis from 0 to 1; what is no number lies at zero's place.
   double ShareOf(double value) const;
+  /// A value as the ticks are written, without the unit.
+  std::string NumberAt(double value) const;
   /// Labels carry no unit, but the last one does.
   std::vector<ValueTick> Ticks() const;
 };

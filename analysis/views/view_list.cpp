@@ -13,7 +13,7 @@ constexpr ViewEntry kViews[] = {
      "each rank's state over time; zoomed in: messages and functions"},
     {"matrix", MatrixView, FitsMatrix, "messages,volume", false,
      "a number for each sender and receiver"},
-    {"bars", BarsView, FitsBars, "states", true, "bars by rank or by name; states are stacked"},
+    {"bars", BarsView, FitsBars, "states", false, "bars by rank or by name; states are stacked"},
     {"histogram", HistogramView, FitsHistogram, "sizes", false,
      "upright bars over classes of sizes, or over message types"},
     {"xy", XyView, FitsTime, "utilisation,load", false, "lines over time, above one another"},

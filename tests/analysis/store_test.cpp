@@ -88,7 +88,7 @@ std::string AllTables(const std::string& path, const IndexPolicy& policy) {
   part.end_ns = trace.SpanNs() / 2;
   for (const Selection& selection : {Selection{}, part}) {
     for (const TableEntry& entry : TableEntries()) {
-      const TableAnswer answer = entry.make(analysis, selection, false);
+      const TableAnswer answer = entry.make(analysis, selection, {});
       text += answer.headline + "\n" + TableText(answer.table) + TableCsv(answer.table) +
               TableJson(answer.table);
     }

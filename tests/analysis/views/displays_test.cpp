@@ -93,7 +93,8 @@ TEST_P(Displays, AreLegibleWhateverTheTableHolds) {
         input.tables = {&table};
         const std::string name = NameOf(view, table, GetParam(), values);
         const Scene scene = view.scene(input);
-        if (values == Values::kSound) {
+        const bool nothing_sent = GetParam().ranks == 1 && table.shape == TableShape::kMatrix;
+        if (values == Values::kSound && !nothing_sent) {
           EXPECT_FALSE(scene.layers.empty()) << name;
         }
         if (scene.layers.empty()) continue;

@@ -64,7 +64,7 @@ struct Maker {
     if (host && rank == ranks) return time < 9.1 ? Noise(0.05, 0.12) : 0;
     if (rank == 0) return Noise(0.88, 0.97);
     if (time < 9.1) return Noise(0.72, 0.86);
-    return 0.3 + 0.28 * std::sin(time * 2.2 + rank * 0.8) + Noise(-0.04, 0.04);
+    return 0.34 + 0.26 * std::sin(time * 2.2 + rank * 0.8) + Noise(-0.04, 0.04);
   }
   int Steps() const { return values == Values::kOne ? 1 : ranks > 100 ? 60 : 230; }
 };
