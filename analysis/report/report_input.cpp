@@ -96,7 +96,7 @@ RunAccuracy AccuracyOf(const Analysis& analysis) {
 ReportInput ReportInputOf(const Analysis& analysis, std::size_t columns) {
   const Trace& trace = analysis.trace;
   const Selection all;
-  const std::vector<Blame> blames = BlameOf(trace, analysis.mpi, analysis.waits, all);
+  const std::vector<Blame> blames = BlameOf(analysis, all);
   ReportInput input;
   input.title = trace.Program();
   input.finding = FindingOf(analysis, all, blames);

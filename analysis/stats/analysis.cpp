@@ -7,10 +7,20 @@
 #include "analysis/stats/estimate.h"
 #include "analysis/stats/profile.h"
 #include "analysis/stats/profile_visitor.h"
+#include "analysis/stats/store.h"
 
 namespace stipple {
 
-Analysis::Analysis(const Trace& of) : trace(of), profiles(of.locations().size()) {
+Analysis::Analysis(const Trace& of) : trace(of) {
+  if (LoadAnalysis(*this)) return;
+  ScanAll();
+  SaveAnalysis(*this);
+}
+
+void Analysis::ScanAll() {
+  profiles.assign(trace.locations().size(), {});
+  steps.clear();
+  kernel.clear();
   std::vector<LocationActivity> activities(profiles.size());
   std::vector<std::vector<BudgetStep>> steps_of(profiles.size());
   std::vector<std::uint64_t> leaves_without_enter(profiles.size());
@@ -46,7 +56,7 @@ Analysis::Analysis(const Trace& of) : trace(of), profiles(of.locations().size())
   for (const std::vector<BudgetStep>& some : steps_of)
     steps.insert(steps.end(), some.begin(), some.end());
   std::ranges::stable_sort(steps, {}, &BudgetStep::time_ns);
-  for (LocationActivity& a : activities) kernel.push_back(std::move(a.system_calls));
+  for (LocationActivity& a : activities) kernel.emplace_back(std::move(a.system_calls));
   mpi = JoinActivity(trace, std::move(activities));
   waits = FindWaits(trace, mpi);
   kernel = KernelTimeOf(trace, std::move(kernel), mpi.calls);
@@ -58,6 +68,16 @@ Analysis::Analysis(const Trace& of) : trace(of), profiles(of.locations().size())
   }
   health.Add(mpi.health);
   health.ForgiveUnfinished();
+}
+
+std::vector<Blame> BlameOf(const Analysis& analysis, const Selection& selection) {
+  if (!selection.WholeTime() || selection.ranks)
+    return BlameOf(analysis.trace, analysis.mpi, analysis.waits, selection);
+  if (!analysis.blames) {
+    analysis.blames = BlameOf(analysis.trace, analysis.mpi, analysis.waits, selection);
+    SaveAnalysis(analysis);
+  }
+  return *analysis.blames;
 }
 
 }  // namespace stipple

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: MIT
-// What statistics start from, all of it from one scan of the archive, several locations at a time.
+// What statistics start from, all of it from one scan of the archive, several locations at a time,
+// or from the index that an earlier one left (store.h).
 #ifndef STIPPLE_ANALYSIS_STATS_ANALYSIS_H
 #define STIPPLE_ANALYSIS_STATS_ANALYSIS_H
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "analysis/stats/blame.h"
 #include "analysis/stats/kernel_time.h"
+#include "analysis/stats/selection.h"
 #include "analysis/stats/waits.h"
 #include "analysis/trace/health.h"
 #include "analysis/trace/mpi_activity.h"
@@ -73,11 +77,19 @@ struct Analysis {
   const Trace& trace;
   std::vector<LocationProfile> profiles;  // by location, of the whole time
   MpiActivity mpi;
-  std::vector<CallWait> waits;    // by call of mpi
+  Array<CallWait> waits;          // by call of mpi
   std::vector<BudgetStep> steps;  // in order of time
   KernelTime kernel;              // by location
   TraceHealth health;             // all that is wrong with the archive
+  // What not everyone asks for: made when it is, and then kept in the index as well.
+  mutable std::optional<std::vector<Blame>> blames;  // of the whole run; ask BlameOf
+
+ private:
+  void ScanAll();
 };
+
+/// Those of the whole run are made once.
+std::vector<Blame> BlameOf(const Analysis& analysis, const Selection& selection);
 
 }  // namespace stipple
 

@@ -168,11 +168,8 @@ class EstimateVisitor {
   EstimateVisitor(const EstimateVisitor&) = delete;
   EstimateVisitor& operator=(const EstimateVisitor&) = delete;
 
-  /// Each chunk is a scan of its own.
-  Hot Begin() {
-    ++chunks_;
-    return hot_;
-  }
+  void BeginChunk() { ++chunks_; }
+  Hot Begin() const { return hot_; }
   void End(const Hot& hot) { hot_ = hot; }
   /// Ends the frames that are still open. `counts`: visits without events since the last samples.
   void Finish(std::uint64_t ticks, std::span<const VisitCount> counts, std::uint32_t thread);

@@ -26,7 +26,7 @@ struct Finding {
   double max_over_mean = 1;           // of the ranks' computing time
   double idle_share = 0;              // of the ranks' time (the host's left out)
   std::string cause =
-      "none";  // of the waiting: a kind of wait; "imbalance": nobody's in particular
+      "none";         // of the waiting: a kind of wait; "imbalance": nobody's in particular
   double gain_s = 0;  // by so much the run would be shorter if the cause were mended, at most
 };
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/stats/analysis.h"
+#include "analysis/stats/blame.h"
 #include "analysis/stats/finding.h"
 #include "analysis/stats/selection.h"
 

@@ -23,7 +23,7 @@ std::vector<CallSpan> Merged(std::vector<CallSpan> spans) {
 }
 
 /// What is left of `spans` without the MPI calls; both in order.
-std::vector<CallSpan> Without(const std::vector<CallSpan>& spans, const std::vector<MpiCall>& mpi,
+std::vector<CallSpan> Without(const std::vector<CallSpan>& spans, std::span<const MpiCall> mpi,
                               std::size_t call) {
   const std::uint32_t location = call < mpi.size() ? mpi[call].location : 0;
   const auto is_here = [&](std::size_t c) { return c < mpi.size() && mpi[c].location == location; };
@@ -41,9 +41,9 @@ std::vector<CallSpan> Without(const std::vector<CallSpan>& spans, const std::vec
 
 }  // namespace
 
-KernelTime KernelTimeOf(const Trace& trace, KernelTime calls, const std::vector<MpiCall>& mpi) {
+KernelTime KernelTimeOf(const Trace& trace, KernelTime calls, std::span<const MpiCall> mpi) {
   for (const Location& l : trace.locations()) {
-    std::vector<CallSpan>& spans = calls[l.index];
+    std::vector<CallSpan>& spans = calls[l.index].Edit();
     if (!l.IsMain()) {
       spans.clear();
       continue;

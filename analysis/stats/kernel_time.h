@@ -4,6 +4,7 @@
 #ifndef STIPPLE_ANALYSIS_STATS_KERNEL_TIME_H
 #define STIPPLE_ANALYSIS_STATS_KERNEL_TIME_H
 
+#include <span>
 #include <vector>
 
 #include "analysis/trace/mpi_activity.h"
@@ -12,11 +13,11 @@
 namespace stipple {
 
 /// By location: none unless it is a main thread.
-using KernelTime = std::vector<std::vector<CallSpan>>;
+using KernelTime = std::vector<Array<CallSpan>>;
 
 /// The system calls in `calls` (by location) together with the absences, less the MPI calls: each
 /// location's spans are apart and in order.
-KernelTime KernelTimeOf(const Trace& trace, KernelTime calls, const std::vector<MpiCall>& mpi);
+KernelTime KernelTimeOf(const Trace& trace, KernelTime calls, std::span<const MpiCall> mpi);
 
 /// Whether anything was recorded that tells of the kernel's time.
 bool HasKernelTime(const Trace& trace, const Location& location);

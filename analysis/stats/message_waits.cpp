@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <span>
+#include <utility>
 
 namespace stipple {
 namespace {
@@ -59,9 +59,12 @@ std::vector<CallWait> WaitsOfMessages(const Analysis& analysis, const Selection&
 }
 
 std::vector<Blame> SelectedBlame(const Analysis& analysis, const Selection& selection) {
-  if (selection.AllMessages())
-    return BlameOf(analysis.trace, analysis.mpi, analysis.waits, selection);
-  return BlameOf(analysis.trace, analysis.mpi, WaitsOfMessages(analysis, selection), selection);
+  if (selection.AllMessages()) return BlameOf(analysis, selection);
+  std::vector<Blame> blames =
+      BlameOf(analysis.trace, analysis.mpi, WaitsOfMessages(analysis, selection), selection);
+  // Time in calls is no wait, and is not told by message.
+  std::erase_if(blames, [](const Blame& b) { return b.kind == WaitKind::kMessageOverhead; });
+  return blames;
 }
 
 }  // namespace stipple

@@ -6,18 +6,65 @@
 
 namespace stipple {
 
+std::vector<std::uint32_t> ProfileVisitor::OpenStack() const {
+  std::vector<std::uint32_t> open;
+  for (const RegionTicks* const* f = stack_.data(); f++ != hot_.top;) open.push_back(NumberOf(*f));
+  return open;
+}
+
+/// Room for so many frames more.
+void ProfileVisitor::Reserve(Hot& hot, std::size_t frames) {
+  while (static_cast<std::size_t>(hot.limit - hot.top) < frames) {
+    const std::ptrdiff_t depth = hot.top - stack_.data();
+    Grow();
+    hot.top = stack_.data() + depth;
+    hot.limit = Limit();
+  }
+}
+
+// Enter or leave, at random, is a branch that no processor foretells. So both take the same way:
+// what a leave takes off the stack, an enter puts there, and it is put there for both. Only what
+// never happens in a sound stream is a branch: a leave of a region that is not on top.
+std::size_t ProfileVisitor::Block(Hot& hot, const EventWord* words, std::size_t count,
+                                  std::uint64_t offset) {
+  if (TimeOf(words[0]) + offset < hot.begin || TimeOf(words[count - 1]) + offset > hot.end)
+    return 0;
+  Reserve(hot, count);
+  RegionTicks* const regions = hot.regions;
+  RegionTicks** top = hot.top;
+  std::uint64_t last = hot.last;
+  std::size_t i = 0;
+  for (; i < count; ++i) {
+    const EventWord word = words[i];
+    const std::uint64_t now = TimeOf(word) + offset;
+    const std::uint64_t leave = (word / kLeaveBit) & 1;
+    RegionTicks* const region = regions + (word & kRegionMask);
+    RegionTicks** const place = top + 1 - leave;
+    if ((static_cast<std::uint64_t>(*place != region) & leave) != 0) [[unlikely]]
+      break;
+    (*top)->exclusive += now - last;
+    last = now;
+    *place = region;
+    top = place - leave;
+    region->Count(leave, now);
+    if (region->is_watched != 0) [[unlikely]]
+      collector_->Function(NumberOf(region), leave != 0, now);
+  }
+  hot.top = top;
+  hot.last = last;
+  return i;
+}
+
 /// Ends the frame on top, which has no leave of its own.
 void ProfileVisitor::PopLeft(Hot& hot, std::uint64_t ticks) {
-  if (hot.top->region->is_watched != 0)
-    collector_->Function(static_cast<std::uint32_t>(hot.top->region - regions_.data()), true,
-                         ticks);
+  if ((*hot.top)->is_watched != 0) collector_->Function(NumberOf(*hot.top), true, ticks);
   hot.Pop(hot.last);
 }
 
 /// Ends the frames above the innermost one of `region`.
 ProfileVisitor::Hot ProfileVisitor::Repair(Hot hot, const RegionTicks* region,
                                            std::uint64_t ticks) {
-  for (; hot.top->region != region; ++enters_without_leave_) PopLeft(hot, ticks);
+  for (; *hot.top != region; ++enters_without_leave_) PopLeft(hot, ticks);
   return hot;
 }
 
@@ -33,12 +80,10 @@ void ProfileVisitor::Guess(const Hot& hot, const EventWord* first, const Unclock
   ++runs_;
   guessed_stack_.clear();
   guessed_regions_.clear();
-  const Frame* below = hot.top;
+  const RegionTicks* const* below = hot.top;
   std::uint64_t begin = run.begin;
   for (std::uint64_t gap = 0; gap <= run.events; ++gap) {
-    const std::uint32_t region = guessed_stack_.empty()
-                                     ? static_cast<std::uint32_t>(below->region - regions_.data())
-                                     : guessed_stack_.back();
+    const std::uint32_t region = guessed_stack_.empty() ? NumberOf(*below) : guessed_stack_.back();
     RegionSlack& slack = slacks_[region];
     if (std::exchange(slack.run, runs_) != runs_) {
       slack.in_run = 0;
@@ -67,9 +112,7 @@ void ProfileVisitor::Guess(const Hot& hot, const EventWord* first, const Unclock
 }
 
 ProfileVisitor::Hot ProfileVisitor::Jump(Hot hot, const EventWord* record, std::uint64_t ticks) {
-  const std::uint64_t now = std::clamp(ticks, hot.begin, hot.end);
-  hot.top->region->exclusive += now - hot.last;
-  hot.last = now;
+  hot.Charge(std::clamp(ticks, hot.begin, hot.end));
   if (KindOf(*record) == RecordKind::kOpenFrames) {
     BeginOpen(hot, record, ticks);
     return hot;
@@ -90,14 +133,9 @@ void ProfileVisitor::BeginOpen(Hot& hot, const EventWord* record, std::uint64_t 
   points_.Begin(record);
   for (const std::uint32_t r :
        OpenRegions(record, static_cast<std::uint32_t>(regions_.size() - 1))) {
-    if (hot.top == hot.limit) {
-      hot.top = Grow();
-      hot.limit = Limit();
-    }
-    RegionTicks* const region = &regions_[r];
-    ++region->open;
-    *++hot.top = {region, hot.last};
-    if (region->is_watched != 0) collector_->Function(r, false, ticks);
+    ++regions_[r].entered_before;
+    hot.Push(&regions_[r], hot.last);
+    if (regions_[r].is_watched != 0) collector_->Function(r, false, ticks);
   }
 }
 
@@ -106,18 +144,14 @@ void ProfileVisitor::BeginOpen(Hot& hot, const EventWord* record, std::uint64_t 
 void ProfileVisitor::SwitchContext(Hot& hot, std::uint32_t from, std::uint32_t to) {
   if (hot.top != stack_.data()) {
     std::vector<RegionTicks*>& frames = waiting_[from];
-    for (const Frame* f = stack_.data() + 1; f <= hot.top; ++f) frames.push_back(f->region);
+    frames.insert(frames.end(), stack_.data() + 1, hot.top + 1);
     while (hot.top != stack_.data()) hot.Pop(hot.last);
   }
   const auto frames = waiting_.extract(to);
   if (frames.empty()) return;
-  for (RegionTicks* region : frames.mapped()) {
-    if (hot.top == hot.limit) {
-      hot.top = Grow();
-      hot.limit = Limit();
-    }
-    ++region->open;
-    *++hot.top = {region, hot.last};
+  for (RegionTicks* const region : frames.mapped()) {
+    ++region->entered_before;
+    hot.Push(region, hot.last);
   }
 }
 

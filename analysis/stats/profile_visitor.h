@@ -16,13 +16,24 @@
 
 namespace stipple {
 
-/// All that an event touches of a region.
-struct RegionTicks {
-  std::uint64_t calls = 0;
-  std::uint64_t inclusive = 0;
-  std::uint64_t exclusive = 0;
-  std::uint32_t open = 0;        // how often it is on the stack
-  std::uint32_t is_watched = 0;  // its events go to the collector, too
+/// All that an event touches of a region: one line of the cache, and few additions. Sums of ticks
+/// wrap, their differences are right.
+struct alignas(64) RegionTicks {
+  std::uint64_t events[2] = {};      // enters, leaves; their difference is how often it is open
+  std::uint64_t ticks[3] = {};       // of enters and leaves of outermost visits; of others
+  std::uint64_t exclusive = 0;       // while it was on top of the stack
+  std::uint64_t entered_before = 0;  // enters that are no calls within the span
+  std::uint64_t is_watched = 0;      // its events go to the collector, too
+
+  std::uint64_t Open() const { return events[0] - events[1]; }
+  std::uint64_t Calls() const { return events[0] - entered_before; }
+  std::uint64_t Inclusive() const { return ticks[1] - ticks[0]; }
+  /// One enter or leave. The place of its time is computed, for whether a visit is the outermost
+  /// one depends on the recursion, which nobody can foretell.
+  void Count(std::uint64_t leave, std::uint64_t now) {
+    ticks[Open() == leave ? leave : 2] += now;
+    ++events[leave];
+  }
 };
 
 /// What is not sure about a region's exclusive time, as some events have no clock; ticks.
@@ -33,23 +44,19 @@ struct RegionSlack {
   std::uint64_t in_run = 0;    // of that run
 };
 
-struct Frame {
-  RegionTicks* region;
-  std::uint64_t enter;  // of the visit
-};
-
 /// Charges the time between two events to the region on top of the stack. Ticks are clamped into
-/// the selected span, so time outside it is nobody's. Below the outermost frame lies one of a
-/// region that is none, so that the stack is never empty. Frames of a context that waits are off
-/// the stack: its time stands still.
+/// the selected span, so time outside it is nobody's. A region's inclusive time is the sum of the
+/// times at which its outermost visits end less those at which they begin. Below the outermost
+/// frame of the stack lies a region that is none, so that it is never empty.
+/// Frames of a context that waits are off the stack: its time stands still.
 class ProfileVisitor {
  public:
   /// What each event touches: a local object of the scan, so that it stays in registers.
   struct Hot {
     ProfileVisitor* owner;
     RegionTicks* regions;
-    Frame* top;
-    Frame* limit;
+    RegionTicks** top;
+    RegionTicks** limit;
     std::uint64_t begin;
     std::uint64_t end;
     std::uint64_t last;
@@ -57,28 +64,23 @@ class ProfileVisitor {
     void Function(std::uint32_t region, bool leave, std::uint64_t ticks) {
       const std::uint64_t now = ticks < begin ? begin : ticks > end ? end : ticks;
       RegionTicks* const r = regions + region;
-      top->region->exclusive += now - last;
-      last = now;
+      Charge(now);
       if (r->is_watched != 0) [[unlikely]]
         owner->collector_->Function(region, leave, ticks);
-      // Enter or leave is a branch on purpose: without it each event would wait for the stack's
-      // previous store (measured: 13 ns instead of 8 where the two alternate at random).
       if (!leave) {
-        r->calls += static_cast<std::uint64_t>(now == ticks);
-        ++r->open;
-        if (top == limit) [[unlikely]] {
-          top = owner->Grow();
-          limit = owner->Limit();
-        }
-        *++top = {r, now};
-      } else if (top->region == r) [[likely]] {
+        r->entered_before += static_cast<std::uint64_t>(now != ticks);
+        Push(r, now);
+      } else if (*top == r) [[likely]] {
         Pop(now);
-      } else if (r->open != 0) {
+      } else if (r->Open() != 0) {
         *this = owner->Repair(*this, r, ticks);
         Pop(now);
       } else {
         ++owner->leaves_without_enter_;
       }
+    }
+    std::size_t Block(const EventWord* words, std::size_t count, std::uint64_t offset) {
+      return owner->Block(*this, words, count, offset);
     }
     void Run(const EventWord* first, const UnclockedRun& run) { owner->Guess(*this, first, run); }
     void Record(const EventWord* record, std::uint64_t ticks) {
@@ -86,13 +88,19 @@ class ProfileVisitor {
       if (owner->collector_ != nullptr) owner->collector_->Record(record, ticks);
     }
 
-    void Pop(std::uint64_t now) {
-      RegionTicks* const r = top->region;
-      // Whether it is the outermost visit depends on the recursion: no branch, it would be guessed.
-      const std::uint64_t outermost = static_cast<std::uint64_t>(--r->open == 0);
-      r->inclusive += (now - top->enter) & (0 - outermost);
-      --top;
+    void Charge(std::uint64_t now) {
+      (*top)->exclusive += now - last;
+      last = now;
     }
+    void Push(RegionTicks* region, std::uint64_t now) {
+      region->Count(0, now);
+      if (top == limit) [[unlikely]] {
+        top = owner->Grow();
+        limit = owner->Limit();
+      }
+      *++top = region;
+    }
+    void Pop(std::uint64_t now) { (*top--)->Count(1, now); }
   };
 
   /// Events of MPI functions and records go to `collector`, if there is one, at the same time.
@@ -101,7 +109,7 @@ class ProfileVisitor {
       : regions_(region_count + 1), stack_(1024), collector_(collector) {
     for (std::uint32_t r = 0; collector != nullptr && r < region_count; ++r)
       regions_[r].is_watched = collector->Wants(r) ? 1 : 0;
-    stack_.front() = {&regions_.back(), 0};
+    stack_.front() = &regions_.back();
     hot_ = {this, regions_.data(), stack_.data(), Limit(), begin, end, begin};
   }
   ProfileVisitor(const ProfileVisitor&) = delete;
@@ -113,9 +121,22 @@ class ProfileVisitor {
   /// Ends the frames that are still open.
   void Finish(std::uint64_t ticks) {
     const std::uint64_t now = std::max(hot_.last, std::clamp(ticks, hot_.begin, hot_.end));
-    hot_.top->region->exclusive += now - hot_.last;
+    hot_.Charge(now);
     while (hot_.top != stack_.data()) hot_.Pop(now);
   }
+  /// For an index of the events, between the parts of a scan (Trace::ScanParts; costs nothing
+  /// else):
+  ///   trace.ScanParts(location, visitor, 64 * 1024, [&](const ScanPosition& at) {
+  ///     index.push_back({at.Place(), visitor.OpenStack(), visitor.IsPlain()});
+  ///   });
+  /// The next events of at.Place() are met at at.now or later with these regions open, outermost
+  /// first, by the process's numbers. Those of contexts that wait are not among them.
+  std::vector<std::uint32_t> OpenStack() const;
+  /// Whether these regions are all that the events to come depend on: no jump point and no other
+  /// context has been seen. Else a scan that begins at the place may see a jump that it cannot
+  /// follow, and must begin further in front.
+  bool IsPlain() const { return points_.IsPlain(); }
+
   /// By region of the process.
   std::span<const RegionTicks> regions() const { return {regions_.data(), regions_.size() - 1}; }
   /// Of regions(); empty if each event had a clock.
@@ -131,6 +152,9 @@ class ProfileVisitor {
            kind == RecordKind::kStackSwitch || kind == RecordKind::kThreadEnd ||
            kind == RecordKind::kOpenFrames;
   }
+  std::uint32_t NumberOf(const RegionTicks* region) const {
+    return static_cast<std::uint32_t>(region - regions_.data());
+  }
   // By value: a hot part whose address is known elsewhere would not stay in registers.
   Hot Repair(Hot hot, const RegionTicks* region, std::uint64_t ticks);
   Hot Jump(Hot hot, const EventWord* record, std::uint64_t ticks);
@@ -138,16 +162,18 @@ class ProfileVisitor {
   void SwitchContext(Hot& hot, std::uint32_t from, std::uint32_t to);
   void BeginOpen(Hot& hot, const EventWord* record, std::uint64_t ticks);
   void PopLeft(Hot& hot, std::uint64_t ticks);
-  Frame* Limit() { return stack_.data() + stack_.size() - 1; }
+  std::size_t Block(Hot& hot, const EventWord* words, std::size_t count, std::uint64_t offset);
+  void Reserve(Hot& hot, std::size_t frames);
+  RegionTicks** Limit() { return stack_.data() + stack_.size() - 1; }
   /// Doubles a full stack; returns its top.
-  Frame* Grow() {
+  RegionTicks** Grow() {
     const std::size_t used = stack_.size();
     stack_.resize(2 * used);
     return stack_.data() + used - 1;
   }
 
   std::vector<RegionTicks> regions_;
-  std::vector<Frame> stack_;
+  std::vector<RegionTicks*> stack_;
   std::vector<RegionSlack> slacks_;
   std::uint64_t runs_ = 0;
   std::vector<std::uint32_t> guessed_stack_;  // of Guess: what it enters

@@ -45,8 +45,7 @@ TableAnswer Imbalance(const Analysis& analysis, const Selection& selection, cons
               TableShape::kObject,
               {{"max_over_mean"}, {"idle_share"}, {"cause"}, {"sentence"}},
               {}};
-  const std::vector<Blame> blames =
-      BlameOf(analysis.trace, analysis.mpi, analysis.waits, selection);
+  const std::vector<Blame> blames = BlameOf(analysis, selection);
   const Finding f = FindingOf(analysis, selection, blames);
   if (!analysis.trace.locations().empty())
     table.rows.push_back({f.max_over_mean, f.idle_share, f.cause, f.sentence});

@@ -19,7 +19,8 @@ int RunCheck(const Arguments& arguments) {
   app.add_option("A", archive, "the archive")->required();
   if (!Parse(app, arguments)) return 0;
   ProgressLine progress;
-  const Trace trace = Trace::Open(archive, progress.meter());
+  // All is looked at again: an index would only tell what was there when it was made.
+  const Trace trace = Trace::Open(archive, progress.meter(), {.use = false});
   const TraceHealth health = Analysis(trace).health;
   progress.Stop();
   std::string text;

@@ -30,9 +30,11 @@ int RunInfo(const Arguments& arguments);
 int RunCheck(const Arguments& arguments);
 int RunPrint(const Arguments& arguments);
 int RunStats(const Arguments& arguments);
+int RunPlot(const Arguments& arguments);
 int RunReport(const Arguments& arguments);
 int RunWatch(const Arguments& arguments);
 int RunCompact(const Arguments& arguments);
+int RunView(const Arguments& arguments);
 int RunExemplar(const Arguments& arguments);
 
 /// An option was not understood: exit 2.

@@ -20,6 +20,7 @@
 #include "analysis/tools/launcher.h"
 #include "analysis/tools/process.h"
 #include "analysis/tools/progress.h"
+#include "analysis/trace/archive_identity.h"
 #include "analysis/trace/input_error.h"
 #include "stipple/filter.h"
 
@@ -35,7 +36,7 @@ struct RunOptions {
   std::string filter;  // empty: none
   bool paused = false;
   unsigned sample_hz = 0;  // 0: no samples
-  std::string max_bytes;  // empty: no limit
+  std::string max_bytes;   // empty: no limit
   bool switches = false;
   std::string syscalls = "none";
   std::vector<std::string> command;
@@ -151,13 +152,14 @@ void CheckFilter(const std::string& path) {
                      fmt::format("'{}' {}", problem.word, problem.what));
 }
 
-/// Only streams (and nothing else) make an archive that may be removed.
+/// Only streams (and what commands of ours left beside them) make an archive that may be removed.
 bool LooksLikeArchive(const fs::path& path) {
   std::error_code error;
   if (!fs::is_directory(fs::symlink_status(path, error))) return false;
   for (const fs::directory_entry& entry : fs::directory_iterator(path, error))
     if (!entry.is_regular_file() ||
-        (entry.path().extension() != ".stream" && entry.path().extension() != kUnfinishedStream))
+        (entry.path().extension() != ".stream" && entry.path().extension() != kUnfinishedStream &&
+         !entry.path().filename().string().starts_with(kIndexName)))
       return false;
   return !error;
 }

@@ -9,7 +9,11 @@
 namespace stipple {
 
 void* FunctionOfViews(const std::string& command, const char* name) {
-  const std::string path = LibraryDirectory() + "/libstipple-views.so";
+  return FunctionOfLibrary(command, "libstipple-views.so", name);
+}
+
+void* FunctionOfLibrary(const std::string& command, const char* library_name, const char* name) {
+  const std::string path = LibraryDirectory() + "/" + library_name;
   void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) throw InputError(command, dlerror());
   void* symbol = dlsym(library, name);

@@ -9,6 +9,8 @@ namespace stipple {
 
 /// A function of libstipple-views.so. Errors: InputError, on behalf of `command`.
 void* FunctionOfViews(const std::string& command, const char* name);
+/// Of another library beside it.
+void* FunctionOfLibrary(const std::string& command, const char* library, const char* name);
 
 }  // namespace stipple
 

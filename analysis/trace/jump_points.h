@@ -31,6 +31,8 @@ class JumpPoints {
   void Begin(const EventWord* open_frames);
   /// The context that the thread is in.
   std::uint32_t context() const { return context_; }
+  /// No jump point and no further context is known.
+  bool IsPlain() const { return points_.empty() && context_ == 0; }
 
  private:
   StackPlace Unwind(std::uint64_t stack) const;

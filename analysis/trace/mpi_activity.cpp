@@ -110,9 +110,9 @@ void TakeLocation(LocationActivity& from, MpiActivity& all, LocationActivity& pr
   for (RequestEnd& e : from.ends) Shift(e.call, base);
   for (ProbeEvent& p : from.probes) Shift(p.call, base);
   for (CollectiveEvent& c : from.collectives) Shift(c.end_call, base);
-  Append(all.calls, from.calls);
-  Append(all.marks, from.marks);
-  Append(all.probes, from.probes);
+  Append(all.calls.Edit(), from.calls);
+  Append(all.marks.Edit(), from.marks);
+  Append(all.probes.Edit(), from.probes);
   Append(process.thread_messages, from.thread_messages);
   Append(process.sends, from.sends);
   Append(process.receives, from.receives);
@@ -168,6 +168,9 @@ void MatchMessages(std::vector<SendEvent>& sends, std::vector<ReceiveEvent>& rec
 
 MpiActivity JoinActivity(const Trace& trace, std::vector<LocationActivity> locations) {
   MpiActivity a;
+  std::vector<SendEvent>& sends = a.sends.Edit();
+  std::vector<ReceiveEvent>& receives = a.receives.Edit();
+  std::vector<CollectiveEvent>& collectives = a.collectives.Edit();
   // Requests of one thread may end in another: they are joined by process.
   std::vector<LocationActivity> processes(trace.processes().size());
   for (const Location& l : trace.locations())
@@ -178,24 +181,24 @@ MpiActivity JoinActivity(const Trace& trace, std::vector<LocationActivity> locat
     NumberCollectives(p.collectives);
     if (trace.kept()) NumberFromEnd(p.collectives);
     MatchThreadMessages(std::move(p.thread_messages), a.thread_messages);
-    Append(a.sends, p.sends);
-    Append(a.receives, p.receives);
-    Append(a.collectives, p.collectives);
+    Append(sends, p.sends);
+    Append(receives, p.receives);
+    Append(collectives, p.collectives);
     const std::string& where = trace.processes()[i].where;
     a.health.Add(Defect::kUndefinedName, where, p.undefined_names);
     a.health.Add(Defect::kUndefinedCommunicator, where, p.undefined_communicators);
     p = {};
   }
   std::ranges::stable_sort(
-      a.sends, {}, [](const SendEvent& s) { return std::tuple(s.channel, s.enter_ns, s.order); });
-  std::ranges::stable_sort(a.receives, {}, [](const ReceiveEvent& r) {
+      sends, {}, [](const SendEvent& s) { return std::tuple(s.channel, s.enter_ns, s.order); });
+  std::ranges::stable_sort(receives, {}, [](const ReceiveEvent& r) {
     return std::tuple(r.channel, r.post_ns, r.order);
   });
-  std::ranges::stable_sort(a.collectives, {}, [](const CollectiveEvent& c) {
+  std::ranges::stable_sort(collectives, {}, [](const CollectiveEvent& c) {
     return std::tuple(c.communicator, c.number, c.rank);
   });
-  if (trace.kept()) DropOverwrittenEnds(a.sends, a.receives);
-  MatchMessages(a.sends, a.receives);
+  if (trace.kept()) DropOverwrittenEnds(sends, receives);
+  MatchMessages(sends, receives);
   CountMessages(a);
   if (!trace.kept()) CountCollectives(trace, a);
   return a;

@@ -15,6 +15,7 @@
 #include <limits>
 #include <vector>
 
+#include "analysis/trace/array.h"
 #include "analysis/trace/health.h"
 #include "analysis/trace/thread_messages.h"
 #include "analysis/trace/trace.h"
@@ -94,13 +95,13 @@ struct CallSpan {
 };
 
 struct MpiActivity {
-  std::vector<MpiCall> calls;          // by location, then time
-  std::vector<SendEvent> sends;        // by channel, then order of posts; cancelled ones are gone
-  std::vector<ReceiveEvent> receives;  // likewise
-  std::vector<ProbeEvent> probes;
-  std::vector<CollectiveEvent> collectives;  // by communicator, number, rank
-  std::vector<MarkEvent> marks;              // by location, then time
-  ThreadMessages thread_messages;            // with the same scan, too
+  Array<MpiCall> calls;          // by location, then time
+  Array<SendEvent> sends;        // by channel, then order of posts; cancelled ones are gone
+  Array<ReceiveEvent> receives;  // likewise
+  Array<ProbeEvent> probes;
+  Array<CollectiveEvent> collectives;  // by communicator, number, rank
+  Array<MarkEvent> marks;              // by location, then time
+  ThreadMessages thread_messages;      // with the same scan, too
   std::uint64_t matched = 0;
   std::uint64_t reversed = 0;  // messages that were complete before their send was entered
   std::uint64_t bytes = 0;     // sent

@@ -54,6 +54,35 @@ constexpr std::uint64_t BytesOf(RecordKind kind) {
   }
 }
 
+constexpr std::ptrdiff_t kGroup = 32;        // words that are looked at together
+constexpr std::ptrdiff_t kMostPlain = 1024;  // so that they are still in the nearest cache
+constexpr std::ptrdiff_t kLeastPlain = 8;    // fewer are not worth a block
+
+/// What is set if the region at `word` is not defined, or the time there is before that of the word
+/// in front of it: then the difference borrows from bits that no difference of less than 2^29 ticks
+/// reaches. (A longer silence is taken for odd, too; then kMostPlain words cannot add up to 2^40
+/// ticks, and where the times wrap the last one is below the first.) No branch, and operations that
+/// any processor has for several words at once.
+std::uint64_t OddBits(const EventWord* word, std::uint64_t region_count) {
+  const std::uint64_t region = *word & kRegionMask;
+  const std::uint64_t difference = (*word | (kLeaveBit | kRegionMask)) - word[-1];
+  return (region - 1) | (region_count - 1 - region) | difference;
+}
+constexpr std::uint64_t kOdd = ~((std::uint64_t{1} << 53) - 1);
+static_assert(kMostPlain <= std::ptrdiff_t{1} << 10);
+
+/// How far from `word` on words follow the one in front of them as plain events do.
+const EventWord* PlainEnd(const EventWord* word, const EventWord* stop,
+                          std::uint64_t region_count) {
+  for (; stop - word >= kGroup; word += kGroup) {
+    std::uint64_t odd = 0;
+    for (std::ptrdiff_t i = 0; i < kGroup; ++i) odd |= OddBits(word + i, region_count);
+    if ((odd & kOdd) != 0) break;
+  }
+  while (word < stop && (OddBits(word, region_count) & kOdd) == 0) ++word;
+  return word;
+}
+
 /// Bytes of a whole OpenFrames record; never those of a record that does not fit.
 std::uint64_t OpenFramesBytes(const EventWord* word, const EventWord* end) {
   if (static_cast<std::uint64_t>(end - word) * sizeof(EventWord) < sizeof(OpenFrames)) return 1;
@@ -103,6 +132,22 @@ void ChunkWords::Decode(const Chunk& stored, ScanCounts& counts) {
     chunk_.end += stored.coded_words;
   else
     ++counts.damaged_chunks;
+}
+
+PlainEvents FindPlain(const EventWord* word, const EventWord* stop, std::uint32_t region_count,
+                      std::uint64_t now, std::uint64_t limit) {
+  const std::uint64_t region = *word & kRegionMask;
+  const std::uint64_t low = TimeOf(*word);
+  PlainEvents plain{word + 1, 0, false};
+  if (low == 0 || region == 0 || region >= region_count) return plain;
+  plain.end =
+      PlainEnd(word + 1, word + std::min<std::ptrdiff_t>(stop - word, kMostPlain), region_count);
+  const std::uint64_t forward = (low - now) & kTimeMask;
+  const std::uint64_t last = TimeOf(plain.end[-1]);
+  plain.offset = now + forward - low;
+  plain.is_plain = plain.end - word >= kLeastPlain && last >= low &&
+                   forward <= kTimeMask - kBackwardTicks && last + plain.offset <= limit;
+  return plain;
 }
 
 std::vector<std::uint32_t> OpenRegions(const EventWord* record, std::uint32_t region_count) {

@@ -15,9 +15,11 @@
 #define STIPPLE_ANALYSIS_TRACE_SCAN_H
 
 #include <algorithm>
+#include <concepts>
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "analysis/trace/stream.h"
@@ -69,17 +71,36 @@ class ChunkWords {
   Chunk chunk_;
 };
 
+/// Where a scan can be taken up again, in a few words that can be kept: a scan from here meets the
+/// same events with the same times. What a visitor had gathered is the visitor's matter: see
+/// ProfileVisitor::OpenStack.
+struct ScanPlace {
+  std::uint64_t chunk = 0;
+  std::uint64_t words = 0;  // of the chunk that are behind
+  std::uint64_t now = 0;
+  std::uint64_t step = 0;
+  std::uint64_t unclocked = 0;
+};
+
 /// Where a scan stands; a fresh one stands before the first event. It is moved, never copied: what
 /// a visitor is shown may lie in it, until the scan comes to the next chunk.
 struct ScanPosition {
   std::size_t chunk = 0;
-  const EventWord* word = nullptr;  // in `chunk`; null: at its begin
+  const EventWord* word = nullptr;  // in `chunk`; null: the scan has not come to it yet
+  std::uint64_t words_behind = 0;   // of the chunk's words, those before `word`
   std::uint64_t now = 0;            // ticks of the last event
   std::uint64_t step = 0;           // between unclocked events
   std::uint64_t unclocked = 0;      // events left that take a step
   ChunkWords words;
 
   ScanPosition() = default;
+  explicit ScanPosition(const ScanPlace& place)
+      : chunk(place.chunk),
+        words_behind(place.words),
+        now(place.now),
+        step(place.step),
+        unclocked(place.unclocked) {}
+  ScanPlace Place() const { return {chunk, words_behind, now, step, unclocked}; }
   ScanPosition(ScanPosition&&) = default;
   ScanPosition& operator=(ScanPosition&&) = default;
 };
@@ -172,6 +193,30 @@ concept HasCounted = requires(Visitor& visitor, const EventWord* record) {
   visitor.Counted(record, 0U, 0U);
 };
 
+/// Function events in a row that a visitor may take all at once.
+struct PlainEvents {
+  const EventWord* end = nullptr;
+  std::uint64_t offset = 0;  // from the low 40 bits of the time to ticks, for all of them
+  bool is_plain = false;     // else what is before `end` must be taken one by one
+};
+/// What begins at `word` and ends before `stop`: events whose regions are defined and whose times,
+/// all read, do not step back, and are not after `limit`.
+PlainEvents FindPlain(const EventWord* word, const EventWord* stop, std::uint32_t region_count,
+                      std::uint64_t now, std::uint64_t limit);
+
+/// A visitor may take plain events by the block: `Block(words, count, offset)` sees `count` (> 0)
+/// of them, at TimeOf(word) + offset, and returns how many it took; the next one then comes to
+/// Function.
+template <class Visitor>
+concept HasBlocks = requires(Visitor& visitor, const EventWord* words) {
+  { visitor.Block(words, std::size_t{}, std::uint64_t{}) } -> std::same_as<std::size_t>;
+};
+/// A visitor may want to know where chunks begin.
+template <class Visitor>
+concept HasChunks = requires(Visitor& visitor) {
+  visitor.BeginChunk();
+};
+
 /// Scans at least `budget` words from `at` (fewer at the end of a chunk), within one chunk. The
 /// visitor has
 ///   void Function(std::uint32_t region, bool leave, std::uint64_t ticks)   region < region_count
@@ -188,12 +233,16 @@ bool ScanSome(const ThreadStream& thread, std::uint32_t region_count, std::uint6
   const std::uint64_t limit =
       at.chunk + 1 < thread.chunks.size() ? thread.chunks[at.chunk + 1].ticks : thread.end_limit;
   const EventWord* const end = WrittenEnd(chunk);
-  const EventWord* w = at.word == nullptr ? chunk.begin : at.word;
+  const EventWord* w =
+      chunk.begin + std::min(at.words_behind, static_cast<std::uint64_t>(end - chunk.begin));
   const EventWord* const stop = w + std::min(static_cast<std::uint64_t>(end - w), budget);
   std::uint64_t now = at.now > chunk.ticks ? at.now : chunk.ticks;
   std::uint64_t step = at.step;
   std::uint64_t unclocked = at.unclocked;
   std::uint64_t function_events = 0;
+  PlainEvents plain{w, 0, false};
+  if constexpr (HasChunks<Visitor>)
+    if (at.word == nullptr && at.words_behind == 0) visitor.BeginChunk();
   decltype(auto) hot = HotPartOf(visitor);
   const auto known = [&counts, region_count](std::uint32_t region) -> std::uint32_t {
     if (region != 0 && region < region_count) [[likely]]
@@ -202,6 +251,17 @@ bool ScanSome(const ThreadStream& thread, std::uint32_t region_count, std::uint6
     return 0;
   };
   while (w < stop) {
+    if constexpr (HasBlocks<std::remove_reference_t<decltype(hot)>>) {
+      if (w >= plain.end && unclocked == 0) plain = FindPlain(w, stop, region_count, now, limit);
+      if (plain.is_plain && w < plain.end) {
+        const std::size_t taken =
+            hot.Block(w, static_cast<std::size_t>(plain.end - w), plain.offset);
+        w += taken;
+        function_events += taken;
+        if (taken != 0) now = TimeOf(w[-1]) + plain.offset;
+        if (w == plain.end) continue;
+      }
+    }
     EventWord word = *w;
     std::uint32_t region = static_cast<std::uint32_t>(word & kRegionMask);
     const std::uint64_t low = TimeOf(word);
@@ -255,20 +315,27 @@ bool ScanSome(const ThreadStream& thread, std::uint32_t region_count, std::uint6
   const bool more = w < end;
   at.chunk += more ? 0 : 1;
   at.word = more ? w : nullptr;
+  at.words_behind = more ? static_cast<std::uint64_t>(w - chunk.begin) : 0;
   at.now = now;
   at.step = more ? step : 0;
   at.unclocked = more ? unclocked : 0;
   return true;
 }
 
-/// Scans the whole thread; `chunk_done(bytes)` is called behind each chunk.
-template <class Visitor, class ChunkDone>
+/// Scans the whole thread; `chunk_done(bytes)` is called behind each chunk, `part_done(at)` behind
+/// each chunk and within it behind every `part_words` words or so. Between parts nothing of the
+/// visitor is in registers: it can be asked for what it knows.
+template <class Visitor, class ChunkDone, class PartDone>
+// NOLINTNEXTLINE(readability-function-size): what is read, who is told of what.
 ScanCounts ScanThread(const ThreadStream& thread, std::uint32_t region_count, Visitor& visitor,
-                      ChunkDone&& chunk_done) {
+                      ChunkDone&& chunk_done, std::uint64_t part_words, PartDone&& part_done) {
   ScanCounts counts;
   ScanPosition at;
   for (const Chunk& chunk : thread.chunks) {
-    ScanSome(thread, region_count, kNoTickLimit, at, counts, visitor);
+    do {
+      ScanSome(thread, region_count, part_words, at, counts, visitor);
+      part_done(static_cast<const ScanPosition&>(at));
+    } while (at.word != nullptr);
     chunk_done(chunk.Bytes());
   }
   return counts;

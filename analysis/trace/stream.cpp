@@ -15,6 +15,7 @@
 
 #include "analysis/trace/chunks.h"
 #include "analysis/trace/gaps.h"
+#include "analysis/trace/stream_index.h"
 #include "analysis/trace/writer.h"
 
 namespace stipple {
@@ -496,6 +497,15 @@ std::unique_ptr<Stream> ReadStream(const std::string& path, TraceHealth& health)
   ReadChunks(*stream, FindChunks(*stream));
   if (!stream->end) stream->health.Add(Defect::kUnclosedProcess, stream->file_name);
   return stream;
+}
+
+std::unique_ptr<Stream> ReadIndexedStream(const std::string& path, std::string_view saved) {
+  TraceHealth told_before;
+  std::unique_ptr<Stream> stream = OpenStream(path, told_before);
+  ByteReader from(saved);
+  if (stream == nullptr || !LoadChunks(from, *stream)) return nullptr;
+  for (const Chunk& chunk : stream->definitions) ReadDefinitions(chunk, *stream);
+  return LoadFindings(from, *stream) ? std::move(stream) : nullptr;
 }
 
 }  // namespace stipple

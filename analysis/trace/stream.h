@@ -59,6 +59,14 @@ struct Chunk {
   }
 };
 
+/// What opening an archive finds out about a thread by looking at its events.
+struct ThreadFacts {
+  std::uint64_t first_ticks = 0;
+  std::uint64_t last_ticks = 0;
+  double lost_switches = 0;      // that the kernel's ring had no room for
+  std::uint64_t has_events = 0;  // of its own or of the kernel
+};
+
 /// Event chunks of one thread, in order.
 struct ThreadStream {
   std::uint32_t thread = 0;
@@ -67,6 +75,7 @@ struct ThreadStream {
   std::vector<Chunk> chunks;
   std::uint64_t end_limit = kMostTicks;  // no event of the last chunk is later
   std::vector<Chunk> kernel;             // what the kernel told of it (kernel.h), in order
+  std::optional<ThreadFacts> facts;
 
   std::uint64_t Bytes() const {
     std::uint64_t bytes = 0;
@@ -183,6 +192,8 @@ struct Stream {
 /// Reads headers and definitions. Null when the file cannot be read or needs a newer reader, with
 /// the reason in `health`.
 std::unique_ptr<Stream> ReadStream(const std::string& path, TraceHealth& health);
+/// The same with what an index holds of it (stream_index.h). Null: that does not fit.
+std::unique_ptr<Stream> ReadIndexedStream(const std::string& path, std::string_view saved);
 
 }  // namespace stipple
 

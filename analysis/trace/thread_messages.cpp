@@ -21,11 +21,13 @@ void MatchThreadMessages(std::vector<ThreadMessageEnd> ends, ThreadMessages& mes
   std::ranges::stable_sort(ends, {}, [](const ThreadMessageEnd& e) {
     return std::tuple(e.channel, e.key, e.time_ns, e.is_receive);
   });
+  std::vector<ThreadMessage>& matched = messages.matched.Edit();
+  std::vector<ThreadMessageEnd>& unmatched = messages.unmatched.Edit();
   std::vector<ThreadMessageEnd> open;  // sends of the channel and key that nobody has taken
   std::size_t first_open = 0;
   const auto leave_open = [&] {
-    messages.unmatched.insert(messages.unmatched.end(),
-                              open.begin() + static_cast<std::ptrdiff_t>(first_open), open.end());
+    unmatched.insert(unmatched.end(), open.begin() + static_cast<std::ptrdiff_t>(first_open),
+                     open.end());
     open.clear();
     first_open = 0;
   };
@@ -35,9 +37,9 @@ void MatchThreadMessages(std::vector<ThreadMessageEnd> ends, ThreadMessages& mes
     if (!end.is_receive) {
       open.push_back(end);
     } else if (first_open < open.size()) {
-      messages.matched.push_back({open[first_open++], end});
+      matched.push_back({open[first_open++], end});
     } else {
-      messages.unmatched.push_back(end);
+      unmatched.push_back(end);
     }
   }
   leave_open();

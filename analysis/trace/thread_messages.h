@@ -13,6 +13,8 @@
 #include <optional>
 #include <vector>
 
+#include "analysis/trace/array.h"
+
 namespace stipple {
 
 /// One end of a message.
@@ -37,8 +39,8 @@ struct ThreadMessage {
 };
 
 struct ThreadMessages {
-  std::vector<ThreadMessage> matched;  // by process, channel, key, time of the receive
-  std::vector<ThreadMessageEnd> unmatched;
+  Array<ThreadMessage> matched;  // by process, channel, key, time of the receive
+  Array<ThreadMessageEnd> unmatched;
 };
 
 /// Matches the ends of one process, of all its threads, in any order; adds to `messages`.

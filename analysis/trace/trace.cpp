@@ -15,6 +15,7 @@
 #include "analysis/trace/kernel.h"
 #include "analysis/trace/parallel.h"
 #include "analysis/trace/ranks.h"
+#include "analysis/trace/stream_index.h"
 #include "analysis/trace/symbols.h"
 
 namespace stipple {
@@ -43,7 +44,7 @@ struct EdgeVisitor {
 };
 
 /// The same of a thread without events of its own, of which only the kernel told.
-bool FindKernelEdges(const Stream& stream, const ThreadStream& thread, Location& location) {
+bool FindKernelEdges(const Stream& stream, const ThreadStream& thread, ThreadFacts& facts) {
   std::uint64_t first = kNoTickLimit;
   std::uint64_t last = 0;
   ScanCounts counts;
@@ -55,27 +56,27 @@ bool FindKernelEdges(const Stream& stream, const ThreadStream& thread, Location&
   });
   if (first > last) return false;
   const RawClock clock(stream, 0);
-  location.first_ticks = clock.Ticks(first);
-  location.last_ticks = std::max(location.first_ticks, clock.Ticks(last));
+  facts.first_ticks = clock.Ticks(first);
+  facts.last_ticks = std::max(facts.first_ticks, clock.Ticks(last));
   return true;
 }
 
 /// Times of a thread's first and last event, read from its outer chunks only; false: no event.
-bool FindEdges(const ThreadStream& thread, std::uint32_t region_count, Location& location) {
+bool FindEdges(const ThreadStream& thread, std::uint32_t region_count, ThreadFacts& facts) {
   EdgeVisitor edge;
   ScanCounts counts;
   ScanPosition at;
   while (!edge.any && ScanSome(thread, region_count, 1, at, counts, edge)) {
   }
   if (!edge.any) return false;
-  location.first_ticks = edge.first;
+  facts.first_ticks = edge.first;
   for (std::size_t c = thread.chunks.size(); c-- > 0;) {
     EdgeVisitor tail;
     at = ScanPosition{};
     at.chunk = c;
     ScanSome(thread, region_count, kNoTickLimit, at, counts, tail);
     if (!tail.any) continue;
-    location.last_ticks = std::max(tail.last, location.first_ticks);
+    facts.last_ticks = std::max(tail.last, facts.first_ticks);
     break;
   }
   return true;
@@ -180,19 +181,35 @@ void Trace::UnifyDefinitions() {
   UnifyCommunicators(processes_, communicators_);
 }
 
+void Trace::FindFacts(std::size_t process, ThreadStream& thread) {
+  ThreadFacts facts;
+  if (FindEdges(thread, processes_[process].RegionCount(), facts) ||
+      FindKernelEdges(*streams_[process], thread, facts))
+    facts.has_events = 1;
+  ScanCounts counts;
+  ForEachKernelRecord(thread, counts, [&](const EventWord* word, std::uint64_t) {
+    if (KindOf(*word) != RecordKind::kCounter) return;
+    const auto r = RecordAt<Counter>(word);
+    if (names_[processes_[process].NameOf(r.name)].text == "switches lost")
+      facts.lost_switches = std::max(facts.lost_switches, r.value);
+  });
+  thread.facts = facts;
+}
+
 void Trace::PlaceLocations() {
   double zero_ns = std::numeric_limits<double>::infinity();
   for (std::size_t p = 0; p < processes_.size(); ++p) {
-    for (const ThreadStream& thread : processes_[p].stream->threads) {
+    for (ThreadStream& thread : streams_[p]->threads) {
+      if (!thread.facts) FindFacts(p, thread);
+      if (thread.facts->has_events == 0) continue;
       Location l;
       l.process_index = p;
       l.stream = &thread;
       l.rank = processes_[p].rank;
       l.process = processes_[p].process;
       l.thread = static_cast<int>(thread.thread & 0x7fffffff);
-      if (!FindEdges(thread, processes_[p].RegionCount(), l) &&
-          !FindKernelEdges(*processes_[p].stream, thread, l))
-        continue;
+      l.first_ticks = thread.facts->first_ticks;
+      l.last_ticks = thread.facts->last_ticks;
       zero_ns = std::min(zero_ns, clocks_.maps[p].Ns(l.first_ticks));
       locations_.push_back(l);
     }
@@ -256,10 +273,7 @@ void Trace::AddLosses() {
 /// What the rings of context switches had no room for.
 void Trace::FindKernelLosses() {
   for (const Location& l : locations_) {
-    if (l.stream->kernel.empty()) continue;
-    double lost = 0;
-    for (const KernelCount& count : ReadKernel(*this, l).counts)
-      if (names_[count.name].text == "switches lost") lost = std::max(lost, count.value);
+    const double lost = l.stream->facts->lost_switches;
     if (lost >= 1 && lost < 1e15)
       health_.Add(Defect::kLostSwitches, ProcessOf(l).where, static_cast<std::uint64_t>(lost));
   }
@@ -273,14 +287,18 @@ void Trace::ReadStreams(const std::vector<std::string>& files) {
     bytes.push_back(error ? 0 : size);
   }
   BeginPhase("opening", std::accumulate(bytes.begin(), bytes.end(), std::uint64_t{0}));
+  FindIndex(files);
+  const std::vector<std::string_view> saved = SavedStreams(index_.get(), files.size());
   std::vector<std::unique_ptr<Stream>> streams(files.size());
   std::vector<TraceHealth> healths(files.size());
   ForEachIndex(files.size(), [&](std::size_t i) {
-    streams[i] = ReadStream(files[i], healths[i]);
+    if (!saved[i].empty()) streams[i] = ReadIndexedStream(files[i], saved[i]);
+    if (streams[i] == nullptr) streams[i] = ReadStream(files[i], healths[i]);
     TellRead(bytes[i]);
   });
   for (const TraceHealth& health : healths) health_.Add(health);
-  for (auto& stream : streams) {
+  for (std::size_t i = 0; i < streams.size(); ++i) {
+    std::unique_ptr<Stream>& stream = streams[i];
     if (!stream) continue;
     // Of a process of which nothing is left only the loss is known: it is no further rank.
     if (stream->threads.empty() && !stream->world && stream->switches.empty()) {
@@ -288,11 +306,12 @@ void Trace::ReadStreams(const std::vector<std::string>& files) {
       health_.Add(Defect::kLostEvents, stream->file_name, stream->lost);
     } else {
       streams_.push_back(std::move(stream));
+      stream_numbers_.push_back(i);
     }
   }
 }
 
-Trace Trace::Open(const std::string& path, ReadMeter* meter) {
+Trace Trace::Open(const std::string& path, ReadMeter* meter, const IndexPolicy& policy) {
   namespace fs = std::filesystem;
   std::error_code error;
   if (!fs::is_directory(path, error))
@@ -305,6 +324,7 @@ Trace Trace::Open(const std::string& path, ReadMeter* meter) {
   Trace trace;
   trace.path_ = path;
   trace.meter_ = meter;
+  trace.policy_ = policy;
   trace.ReadStreams(files);
   if (trace.streams_.empty()) trace.health_.Add(Defect::kEmptyArchive, "");
   trace.processes_ = NumberProcesses(trace.streams_);
@@ -313,6 +333,7 @@ Trace Trace::Open(const std::string& path, ReadMeter* meter) {
   NameCode(trace.streams_, trace.health_);
   trace.UnifyDefinitions();
   trace.PlaceLocations();
+  trace.LoadCounts();
   trace.AddLosses();
   trace.FindKernelLosses();
   std::vector<bool> seen;

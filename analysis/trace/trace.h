@@ -13,8 +13,10 @@
 #include <string_view>
 #include <vector>
 
+#include "analysis/trace/archive_identity.h"
 #include "analysis/trace/clock.h"
 #include "analysis/trace/health.h"
+#include "analysis/trace/index_file.h"
 #include "analysis/trace/read_meter.h"
 #include "analysis/trace/scan.h"
 #include "analysis/trace/stream.h"
@@ -94,11 +96,19 @@ struct KeptPart {
   std::uint64_t overwritten_bytes = 0;
 };
 
+/// Whether what a first pass finds is kept beside the archive (docs/architecture.md, "The store").
+struct IndexPolicy {
+  bool use = true;
+  /// Smaller archives are read anew each time: that is quicker than looking after a file.
+  std::uint64_t least_bytes = 1 << 20;
+};
+
 class Trace {
  public:
   /// Throws InputError when `path` is no directory. Damage is no error: see Health. The meter, if
   /// any, is told of all reading and must live longer than the trace.
-  static Trace Open(const std::string& path, ReadMeter* meter = nullptr);
+  static Trace Open(const std::string& path, ReadMeter* meter = nullptr,
+                    const IndexPolicy& policy = {});
 
   const std::string& path() const { return path_; }
   const std::vector<Region>& regions() const { return regions_; }
@@ -139,8 +149,17 @@ class Trace {
   /// scanned at the same time.
   template <class Visitor>
   void Scan(const Location& l, Visitor& visitor) const {
-    counts_[l.index] = ScanThread(*l.stream, ProcessOf(l).RegionCount(), visitor,
-                                  [this](std::uint64_t bytes) { TellRead(bytes); });
+    ScanParts(l, visitor, kNoTickLimit, [](const ScanPosition&) {});
+  }
+  /// The same, and `part_done(const ScanPosition&)` is called behind each chunk and within it
+  /// behind every `part_words` words or so: what the visitor knows then, with
+  /// ScanPosition::Place(), is what an index of the events needs, see ProfileVisitor::OpenStack.
+  template <class Visitor, class PartDone>
+  void ScanParts(const Location& l, Visitor& visitor, std::uint64_t part_words,
+                 PartDone&& part_done) const {
+    counts_[l.index] = ScanThread(
+        *l.stream, ProcessOf(l).RegionCount(), visitor,
+        [this](std::uint64_t bytes) { TellRead(bytes); }, part_words, part_done);
   }
   /// Calls `body` for each location of `some` on several cores, so that each may be scanned once;
   /// the meter counts it as one phase.
@@ -169,9 +188,18 @@ class Trace {
   TraceHealth Health() const;
   std::uint64_t EventCount() const;
 
+  /// What was saved of these very streams; null if nothing was.
+  const std::shared_ptr<const IndexFile>& index() const { return index_; }
+  /// Saves what Open and Scan found and what `add` adds, if the archive is worth an index and does
+  /// not change. A place that cannot be written is passed over in silence.
+  void SaveIndex(const std::function<void(IndexWriter&)>& add) const;
+
  private:
   const ClockMap& Map(const Location& l) const { return clocks_.maps[l.process_index]; }
   void ReadStreams(const std::vector<std::string>& files);
+  void FindIndex(const std::vector<std::string>& files);
+  void LoadCounts();
+  void FindFacts(std::size_t process, ThreadStream& thread);
   void UnifyDefinitions();
   void PlaceLocations();
   void FindKeptPart(double first_ns);
@@ -180,7 +208,8 @@ class Trace {
 
   std::string path_;
   std::vector<std::unique_ptr<Stream>> streams_;
-  std::vector<Process> processes_;  // as streams_
+  std::vector<std::size_t> stream_numbers_;  // among the files, which are in order
+  std::vector<Process> processes_;           // as streams_
   std::vector<Location> locations_;
   std::vector<Region> regions_;
   std::vector<Name> names_;
@@ -195,6 +224,9 @@ class Trace {
   mutable std::vector<std::optional<ScanCounts>> counts_;
   std::unique_ptr<FrameNames> frame_names_ = std::make_unique<FrameNames>();
   ReadMeter* meter_ = nullptr;
+  IndexPolicy policy_;
+  ArchiveIdentity identity_;
+  std::shared_ptr<const IndexFile> index_;
 };
 
 /// One event, decoded.

@@ -112,12 +112,12 @@ std::string NoteFor(const Timeline& detail, bool marks) {
 
 }  // namespace
 
-Scene DetailView(const ViewInput& input) {
-  Scene scene{.name = "detail", .width = kDetailWidth};
+Scene DetailScene(const ViewInput& input, double width) {
+  Scene scene{.name = "detail", .width = width};
   if (!HasRows(input.detail) || !(input.detail->end_s > input.detail->begin_s)) return scene;
   const Timeline& detail = *input.detail;
   const RowGrid grid = MakeRowGrid(detail.rows, CulpritOf(input), DetailLimits(detail.rows.size()));
-  const TimeAxis axis{detail.begin_s, detail.end_s, AxisLeft(grid), kDetailWidth};
+  const TimeAxis axis{detail.begin_s, detail.end_s, AxisLeft(grid), width};
   const bool marks = grid.pitch >= kLeastPitchForMarks && !detail.messages.empty();
   const double bottom = grid.rows.front().y + grid.height + 6;
   scene.height = std::ceil(bottom + kAxisHeight);
@@ -140,5 +140,7 @@ Scene DetailView(const ViewInput& input) {
   scene.layers.push_back(std::move(letters));
   return scene;
 }
+
+Scene DetailView(const ViewInput& input) { return DetailScene(input, kDetailWidth); }
 
 }  // namespace stipple

@@ -63,4 +63,25 @@ std::optional<Point> LabelRoom::Take(Point point, std::string_view text, const T
   return std::nullopt;
 }
 
+Box BoxOfText(const TextShape& text) {
+  const double width = TextWidth(text.text, text.style.size, text.style.bold);
+  const double before = text.style.anchor == Anchor::kStart    ? 0
+                        : text.style.anchor == Anchor::kMiddle ? width / 2
+                                                               : width;
+  const double half = text.style.size * kHalfLine;
+  if (text.style.upwards)
+    return {text.x - half, text.y + before - width, text.x + half, text.y + before};
+  return {text.x - before, text.y - half, text.x - before + width, text.y + half};
+}
+
+bool TextRoom::Take(const TextShape& text, double apart) {
+  const Box box = BoxOfText(text);
+  const bool inside = box.left >= area_.left && box.right <= area_.right && box.top >= area_.top &&
+                      box.bottom <= area_.bottom;
+  const Box wide{box.left - apart, box.top, box.right + apart, box.bottom};
+  if (!inside || MeetsAny(wide, taken_)) return false;
+  taken_.push_back(box);
+  return true;
+}
+
 }  // namespace stipple

@@ -45,6 +45,20 @@ class LabelRoom {
   std::vector<Box> lines_;
 };
 
+/// The box of a text wherever it is anchored and however it is turned.
+Box BoxOfText(const TextShape& text);
+
+/// Texts whose places are given: each is taken if it lies inside and over no other.
+class TextRoom {
+ public:
+  explicit TextRoom(Box area) : area_(area) {}
+  bool Take(const TextShape& text, double apart = 3);
+
+ private:
+  Box area_;
+  std::vector<Box> taken_;
+};
+
 }  // namespace stipple
 
 #endif

@@ -34,6 +34,9 @@ std::vector<StateShares> RunShares(const ViewInput& input);
 /// Right-aligned row labels; `right` is where they end.
 Layer RowLabels(const RowGrid& grid, double right);
 
+/// A short period, as wide as asked for.
+Scene DetailScene(const ViewInput& input, double width);
+
 /// "node" where there is a host, else "rank".
 std::string_view NounFor(const Timeline& timeline);
 

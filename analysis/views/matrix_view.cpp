@@ -4,12 +4,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <utility>
 
 #include "analysis/stats/number.h"
+#include "analysis/views/fits.h"
 #include "analysis/views/layout.h"
 #include "analysis/views/palette.h"
+#include "analysis/views/quantity.h"
+#include "analysis/views/scene_grid.h"
 #include "analysis/views/table_access.h"
 #include "analysis/views/text.h"
 #include "analysis/views/view_list.h"
@@ -23,6 +27,8 @@ constexpr double kLargestCell = 44;
 constexpr double kTop = 24;         // receivers' names
 constexpr double kSenderRoom = 18;  // the word "sender", upwards
 constexpr double kHostGap = 4;
+constexpr double kPlotWidth = 460;  // of a display of its own
+constexpr std::size_t kMostMatrices = 6;
 
 /// Neighbouring ranks that share a row and a column.
 struct CellGroup {
@@ -37,6 +43,12 @@ struct MatrixModel {
   double largest = 0;
   std::size_t ranks_per_cell = 1;
 };
+
+/// A number that can be added and coloured; 0 for what was not recorded.
+double ValueIn(const Cell& cell) {
+  const double value = CellNumber(cell);
+  return std::isfinite(value) ? std::clamp(value, -1e300, 1e300) : 0;
+}
 
 MatrixModel ModelOf(const Table& table) {
   MatrixModel model;
@@ -58,7 +70,7 @@ MatrixModel ModelOf(const Table& table) {
       double sum = 0;
       for (std::size_t i = 0; i < sender.count; ++i)
         for (std::size_t k = 0; k < receiver.count; ++k)
-          sum += CellNumber(table.rows[sender.first + i][receiver.first + k + 1]);
+          sum += ValueIn(table.rows[sender.first + i][receiver.first + k + 1]);
       row.push_back(sum);
       model.largest = std::max(model.largest, sum);
     }
@@ -73,14 +85,14 @@ struct MatrixLayout {
   double side = 0;         // of the whole square
 };
 
-MatrixLayout LayoutOf(const MatrixModel& model) {
+MatrixLayout LayoutOf(const MatrixModel& model, double width) {
   MatrixLayout layout;
   double widest = 0;
   for (const CellGroup& group : model.groups)
     widest = std::max(widest, TextWidth(group.name, layout.label_size));
   layout.left = std::ceil(kSenderRoom + widest + 8);
   const auto count = static_cast<double>(model.groups.size());
-  const double room = kMatrixWidth - layout.left - kHostGap;
+  const double room = width - layout.left - kHostGap;
   layout.cell = std::min(kLargestCell, room / count);
   layout.cell = std::max(1.0, std::floor(layout.cell));
   layout.gap = layout.cell >= 6 ? 1 : 0;
@@ -118,10 +130,22 @@ CellNumbers NumbersFor(const MatrixModel& model, const MatrixLayout& layout, dou
   return numbers;
 }
 
-using ValueText = std::string (*)(double value);
+/// What the numbers are, and how they are said in words.
+struct MatrixKind {
+  Quantity quantity = Quantity::kCount;
+  std::string_view noun{};  // of counts
 
-std::string CountText(double value) {
-  return FormatCount(std::llround(value)) + (std::llround(value) == 1 ? " message" : " messages");
+  std::string Text(double value) const {
+    if (quantity != Quantity::kCount || noun.empty() || std::fabs(value) > 1e15)
+      return ValueText(quantity, value);
+    return FormatCount(std::llround(value)) + ' ' + std::string(noun) +
+           (std::llround(value) == 1 ? "" : "s");
+  }
+};
+
+MatrixKind KindOf(const Table& table) {
+  const Quantity quantity = QuantityOf(table.name);
+  return {quantity, quantity == Quantity::kCount && table.name == "messages" ? "message" : ""};
 }
 
 /// Orders rectangles by colour.
@@ -131,7 +155,8 @@ int FillKey(const Shape& shape) {
 }
 
 /// Cells of equal colour side by side become one rectangle when there is no gap between them.
-void AddCells(Layer& layer, const MatrixModel& model, const MatrixLayout& layout, ValueText text) {
+void AddCells(Layer& layer, const MatrixModel& model, const MatrixLayout& layout,
+              const MatrixKind& kind) {
   const bool tooltips = model.groups.size() <= kMostTooltips;
   for (std::size_t i = 0; i < model.groups.size(); ++i)
     for (std::size_t k = 0; k < model.groups.size();) {
@@ -149,7 +174,7 @@ void AddCells(Layer& layer, const MatrixModel& model, const MatrixLayout& layout
                      {}};
       if (tooltips && step > 0)
         rect.tooltip = fmt::format("{} \u2192 {}: {}", model.groups[i].name, model.groups[k].name,
-                                   text(value));
+                                   kind.Text(value));
       layer.shapes.emplace_back(std::move(rect));
       k += run;
     }
@@ -208,7 +233,7 @@ Layer Names(const MatrixModel& model, const MatrixLayout& layout) {
 }
 
 /// Grid lines are the ground that shows between the cells.
-Layer Cells(const MatrixModel& model, const MatrixLayout& layout, ValueText text) {
+Layer Cells(const MatrixModel& model, const MatrixLayout& layout, const MatrixKind& kind) {
   Layer layer{"cells", {}};
   const bool host = model.groups.back().host && model.groups.size() > 1;
   const double inner = host ? layout.at.back() - kHostGap : layout.side;
@@ -223,25 +248,42 @@ Layer Cells(const MatrixModel& model, const MatrixLayout& layout, ValueText text
                                           kGrid,
                                           {}});
   Layer cells{"cells", {}};
-  AddCells(cells, model, layout, text);
+  AddCells(cells, model, layout, kind);
   layer.shapes.insert(layer.shapes.end(), cells.shapes.begin(), cells.shapes.end());
   return layer;
 }
 
-Scene MatrixView(Scene scene, const Table* table, bool bytes) {
+/// The matrix's own name and unit above it, where there are several.
+Scene Headed(Scene scene) {
+  constexpr double kHeading = 26;
+  for (Layer& layer : scene.layers)
+    for (Shape& shape : layer.shapes) MoveShape(shape, 0, kHeading);
+  const std::string note = ShortenEnd(scene.note, scene.width / 2, 12);
+  scene.layers.push_back(
+      {"labels",
+       {TextShape{0,
+                  9,
+                  ShortenEnd(scene.title, scene.width / 2 - 20, 14 * 1.12),
+                  {.size = 14, .colour = kInk, .bold = true}},
+        TextShape{
+            scene.width, 9, note, {.size = 12, .colour = kSecondary, .anchor = Anchor::kEnd}}}});
+  scene.height += kHeading;
+  return scene;
+}
+
+Scene MatrixScene(Scene scene, const Table* table, const MatrixKind& kind) {
   if (table == nullptr || table->rows.empty() || table->columns.size() < 2) return scene;
   const MatrixModel model = ModelOf(*table);
   if (model.largest <= 0) return scene;
-  const MatrixLayout layout = LayoutOf(model);
-  const Unit unit = bytes ? ByteUnitFor(model.largest) : Unit{"count", 1};
-  const CellNumbers numbers = NumbersFor(model, layout, unit.size);
+  const MatrixLayout layout = LayoutOf(model, scene.width);
+  const Scale scale = ScaleFor(kind.quantity, model.largest);
+  const CellNumbers numbers = NumbersFor(model, layout, scale.size);
   scene.height = std::ceil(kTop + layout.side + 28);
-  scene.note = std::string(unit.name);
-  if (numbers.size == 0)
-    scene.note = "at most " + (bytes ? FormatBytes(model.largest) : CountText(model.largest));
+  scene.note = scale.unit.empty() ? "count" : scale.unit;
+  if (numbers.size == 0) scene.note = "at most " + kind.Text(model.largest);
   if (model.ranks_per_cell > 1)
     scene.note += fmt::format(" \u00b7 cell: {0} \u00d7 {0} ranks", model.ranks_per_cell);
-  scene.layers.push_back(Cells(model, layout, bytes ? FormatBytes : CountText));
+  scene.layers.push_back(Cells(model, layout, kind));
   scene.layers.push_back(Numbers(model, layout, numbers));
   scene.layers.push_back(Names(model, layout));
   const TextStyle word{.size = 12, .colour = kSecondary, .anchor = Anchor::kMiddle};
@@ -256,20 +298,43 @@ Scene MatrixView(Scene scene, const Table* table, bool bytes) {
 
 }  // namespace
 
+bool FitsMatrix(const Table& table) {
+  return table.shape == TableShape::kMatrix && table.columns.size() > 1;
+}
+
 Scene MessageMatrixView(const ViewInput& input) {
-  return MatrixView({.name = "matrix",
-                     .width = kMatrixWidth,
-                     .title = "Messages",
-                     .description = "Number of messages; senders are rows, receivers columns."},
-                    input.messages, false);
+  return MatrixScene({.name = "matrix",
+                      .width = kMatrixWidth,
+                      .title = "Messages",
+                      .description = "Number of messages; senders are rows, receivers columns."},
+                     input.messages, {Quantity::kCount, "message"});
 }
 
 Scene VolumeMatrixView(const ViewInput& input) {
-  return MatrixView({.name = "volume",
-                     .width = kMatrixWidth,
-                     .title = "Volume",
-                     .description = "Bytes sent; senders are rows, receivers columns."},
-                    input.volume, true);
+  return MatrixScene({.name = "volume",
+                      .width = kMatrixWidth,
+                      .title = "Volume",
+                      .description = "Bytes sent; senders are rows, receivers columns."},
+                     input.volume, {Quantity::kBytes, {}});
+}
+
+Scene MatrixView(const ViewInput& input) {
+  std::vector<Scene> scenes;
+  for (const Table* table : input.tables) {
+    if (table == nullptr || !FitsMatrix(*table) || scenes.size() == kMostMatrices) continue;
+    const std::string name = WordsFor(table->name);
+    Scene scene = MatrixScene({.name = name,
+                               .width = kPlotWidth,
+                               .title = name,
+                               .description = "senders are rows, receivers columns"},
+                              table, KindOf(*table));
+    if (!scene.layers.empty()) scenes.push_back(Headed(std::move(scene)));
+  }
+  if (scenes.empty()) return {.name = "matrix"};
+  std::string title;
+  for (const Scene& scene : scenes) title += (title.empty() ? "" : ", ") + scene.title;
+  title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
+  return SceneGrid("matrix", title + " from sender to receiver", scenes, 2, 40);
 }
 
 }  // namespace stipple

@@ -65,6 +65,14 @@ struct Layer {
   std::vector<Shape> shapes;
 };
 
+/// What a colour means; drawn beside the heading by whoever puts the scene on a page.
+struct KeyEntry {
+  std::string label{};
+  Colour colour{};
+  bool line = false;  // a stroke, else a square
+  bool dashed = false;
+};
+
 struct Scene {
   std::string name{};         // unique on a page: prefix of element ids
   double width = 0;           // pixels
@@ -73,6 +81,7 @@ struct Scene {
   std::string description{};  // what the picture shows, in words
   std::string note{};         // unit or key, shown beside the heading
   std::vector<Layer> layers{};
+  std::vector<KeyEntry> key{};
 };
 
 }  // namespace stipple

@@ -28,6 +28,8 @@ struct Mover {
 
 }  // namespace
 
+void MoveShape(Shape& shape, double x, double y) { std::visit(Mover{x, y}, shape); }
+
 Scene SceneGrid(std::string name, std::string title, std::span<const Scene> scenes,
                 std::size_t columns, double gap) {
   Scene grid{.name = std::move(name), .title = std::move(title)};

@@ -10,6 +10,8 @@
 
 namespace stipple {
 
+void MoveShape(Shape& shape, double x, double y);
+
 /// Row by row, `columns` in each, `gap` pixels between them; cells are as large as the largest
 /// scene.
 Scene SceneGrid(std::string name, std::string title, std::span<const Scene> scenes,

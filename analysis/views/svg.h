@@ -11,6 +11,7 @@ namespace stipple {
 
 struct SvgOptions {
   bool standalone = false;  // a file of its own: name space, size, white ground
+  bool mono = false;        // patterns and greys: states and lines are told apart without colour
 };
 
 /// The same scene gives the same bytes, everywhere.

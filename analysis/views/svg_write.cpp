@@ -5,10 +5,12 @@
 #include <vtkXMLDataElement.h>
 
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <utility>
 #include <vector>
 
+#include "analysis/views/palette.h"
 #include "analysis/views/text.h"
 
 namespace stipple {
@@ -19,6 +21,12 @@ constexpr std::string_view kFontFamily = "Inter,'DejaVu Sans',system-ui,sans-ser
 /// Half the height of capitals over the font size, in Inter as in DejaVu Sans. Baselines are placed
 /// by it because not every renderer knows `dominant-baseline`.
 constexpr double kMiddleOverBaseline = 0.364;
+
+/// Diagonal lines for message transmission.
+constexpr std::string_view kMonoPattern =
+    "<defs><pattern id=\"mono-message\" width=\"4\" height=\"4\" patternUnits=\"userSpaceOnUse\" "
+    "patternTransform=\"rotate(45)\"><rect width=\"4\" height=\"4\" fill=\"#fff\"/>"
+    "<rect width=\"1.4\" height=\"4\" fill=\"#000\"/></pattern></defs>\n";
 
 /// How the device writes a line that shall not be seen.
 constexpr std::string_view kNoPenDashes = "0,10";
@@ -85,21 +93,57 @@ std::string AttributeText(std::string_view name, std::string_view value) {
   return fmt::format(" {}=\"{}\"", name, EscapeMarkup(value));
 }
 
+/// What a colour becomes where there are none: states have greys and a pattern of their own, all
+/// else the grey of its lightness.
+std::string Grey(std::string_view colour) {
+  constexpr std::string_view kFills[kStateCount] = {"#6b6b6b", "#000000", "url(#mono-message)",
+                                                    "#f1f1f1"};
+  if (colour.size() != 7 || colour[0] != '#') return std::string(colour);
+  const long rgb = std::strtol(std::string(colour.substr(1)).c_str(), nullptr, 16);
+  const Colour read{static_cast<std::uint8_t>(rgb >> 16), static_cast<std::uint8_t>(rgb >> 8 & 255),
+                    static_cast<std::uint8_t>(rgb & 255)};
+  for (std::size_t s = 0; s < kStateCount; ++s)
+    if (read == kStateColours[s]) return std::string(kFills[s]);
+  const int grey =
+      static_cast<int>(std::lround(0.299 * read.red + 0.587 * read.green + 0.114 * read.blue));
+  return fmt::format("#{0:02x}{0:02x}{0:02x}", grey);
+}
+
+/// Dashes in place of the colours of lines.
+std::string_view DashesFor(std::string_view stroke) {
+  struct Dashes {
+    Colour colour;
+    std::string_view dashes;
+  };
+  constexpr Dashes kDashes[] = {{kLoadLine, "8 3"}, {kTeal, "2 2"}, {kStateColours[1], "8 3 2 3"}};
+  for (const Dashes& d : kDashes)
+    if (stroke == fmt::format("#{:02x}{:02x}{:02x}", d.colour.red, d.colour.green, d.colour.blue))
+      return d.dashes;
+  return {};
+}
+
 /// Attributes of fill and stroke that say something; the rest is SVG's default.
-std::string Paint(vtkXMLDataElement* element) {
+std::string Paint(vtkXMLDataElement* element, bool mono) {
   std::string text;
+  const std::string_view stroke = Attribute(element, "stroke");
+  if (mono && Attribute(element, "stroke-dasharray").empty() && !DashesFor(stroke).empty())
+    text += AttributeText("stroke-dasharray", DashesFor(stroke));
   for (const char* name :
        {"fill", "fill-opacity", "stroke", "stroke-opacity", "stroke-width", "stroke-dasharray"}) {
     const std::string_view value = Attribute(element, name);
     const bool is_default = value.empty() || (value == "1" && std::string_view(name) != "fill");
     if (is_default) continue;
     const bool dashes = std::string_view(name) == "stroke-dasharray";
-    text += AttributeText(name, dashes ? "3 3" : value);
+    const bool colour = std::string_view(name) == "fill" || std::string_view(name) == "stroke";
+    // A pattern is no colour for a thin line.
+    const std::string grey = mono && colour ? Grey(value) : std::string(value);
+    const bool hatched_line = std::string_view(name) == "stroke" && grey.starts_with("url");
+    text += AttributeText(name, dashes ? "3 3" : hatched_line ? "#555555" : grey);
   }
   return text;
 }
 
-std::string TextElement(vtkXMLDataElement* element) {
+std::string TextElement(vtkXMLDataElement* element, bool mono) {
   const std::string_view anchor = Attribute(element, "text-anchor");
   const std::string_view transform = Attribute(element, "transform");
   const std::vector<double> place = Numbers(transform);  // translate(x,y)rotate(a)
@@ -114,7 +158,9 @@ std::string TextElement(vtkXMLDataElement* element) {
   else if (place.size() == 2)
     text += fmt::format(" x=\"{}\" y=\"{}\"", Decimal(Hundredths(place[0])),
                         Decimal(Hundredths(place[1] + drop)));
-  text += AttributeText("fill", Attribute(element, "fill"));
+  const std::string_view fill = Attribute(element, "fill");
+  const std::string grey = mono ? Grey(fill) : std::string(fill);
+  text += AttributeText("fill", grey.starts_with("url") ? "#555555" : grey);
   text += AttributeText("font-size", Decimal(Hundredths(size)));
   if (Attribute(element, "font-weight") == "bold") text += " font-weight=\"600\"";
   if (anchor == "right" || anchor == "end") text += " text-anchor=\"end\"";
@@ -140,9 +186,9 @@ struct Drawn {
   }
 };
 
-Drawn DrawnOf(vtkXMLDataElement* element) {
+Drawn DrawnOf(vtkXMLDataElement* element, bool mono) {
   Drawn drawn;
-  drawn.paint = Paint(element);
+  drawn.paint = Paint(element, mono);
   const bool line = Name(element) == "polyline";
   const std::string_view outline = Attribute(element, line ? "points" : "d");
   drawn.outline = CompactPath(Numbers(outline), !line);
@@ -153,7 +199,7 @@ Drawn DrawnOf(vtkXMLDataElement* element) {
   return drawn;
 }
 
-std::string GroupText(vtkXMLDataElement* group) {
+std::string GroupText(vtkXMLDataElement* group, bool mono) {
   std::string text;
   Drawn pending;
   const auto flush = [&] {
@@ -164,12 +210,12 @@ std::string GroupText(vtkXMLDataElement* group) {
     vtkXMLDataElement* element = group->GetNestedElement(i);
     if (Name(element) == "text") {
       flush();
-      text += TextElement(element);
+      text += TextElement(element, mono);
       continue;
     }
     const bool path = Name(element) == "path", line = Name(element) == "polyline";
     if ((!path && !line) || Attribute(element, "stroke-dasharray") == kNoPenDashes) continue;
-    Drawn drawn = DrawnOf(element);
+    Drawn drawn = DrawnOf(element, mono);
     if (!pending.outline.empty() && pending.Joins(drawn)) {
       pending.outline += drawn.outline;
       continue;
@@ -222,13 +268,15 @@ std::string WriteSvg(const Scene& scene, vtkXMLDataElement* root, const SvgOptio
   text +=
       fmt::format("<title id=\"{0}-title\">{1}</title><desc id=\"{0}-description\">{2}</desc>\n",
                   scene.name, EscapeMarkup(scene.title), EscapeMarkup(scene.description));
-  // Sharp edges for areas only; lines and text stay smooth.
-  text +=
-      "<style>.states path,.cells path,.bars path{shape-rendering:crispEdges}"
+  // Sharp edges for areas only; lines and text stay smooth. A file of its own has no variables.
+  text += fmt::format(
+      "<style>.states path,.cells path,.bars path{{shape-rendering:crispEdges}}"
       ".letters text,.marks "
-      "text{paint-order:stroke;stroke:var(--ground,#fff);stroke-width:3px}</style>\n";
+      "text{{paint-order:stroke;stroke:{};stroke-width:3px}}</style>\n",
+      options.standalone ? "#fff" : "var(--ground,#fff)");
+  if (options.mono) text += kMonoPattern;
   for (int i = 0; i < root->GetNumberOfNestedElements(); ++i)
-    text += GroupText(root->GetNestedElement(i));
+    text += GroupText(root->GetNestedElement(i), options.mono);
   return text + "</svg>\n";
 }
 

@@ -91,4 +91,12 @@ Scene TimelineView(const ViewInput& input) {
   return scene;
 }
 
+Scene TimelineOrDetailView(const ViewInput& input) {
+  Scene scene = HasRows(input.detail) ? DetailScene(input, kMainWidth) : TimelineView(input);
+  scene.name = "timeline";
+  for (std::size_t s = 0; s < kStateCount; ++s)
+    scene.key.push_back({kStateNames[s], kStateColours[s]});
+  return scene;
+}
+
 }  // namespace stipple

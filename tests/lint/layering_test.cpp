@@ -47,7 +47,7 @@ const std::vector<PartRule> kRules = {
     {"raytracer/simulate", {"raytracer", kUser}, {"simgrid/", "smpi/", "mpi.h"}},
     {"analysis/trace", {kFormat}, {"fmt/", "zstd.h", "elfutils/", "dwarf.h"}},
     {"analysis/stats", {kFormat, "analysis/trace"}, {"fmt/"}},
-    {"analysis/views", {"analysis/stats", "analysis/trace"}, {"fmt/", "vtk"}},
+    {"analysis/views", {"analysis/stats", "analysis/trace"}, {"fmt/", "vtk", "librsvg/", "cairo"}},
     {"analysis/report",
      {"analysis/views", "analysis/stats", "analysis/trace", kFormat},
      {"fmt/", "nlohmann/"}},

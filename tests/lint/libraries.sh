@@ -29,6 +29,11 @@ done
 for library in $(needed "$bin/stipple"); do
   case $library in libvtk* | libmpi*) fail "stipple needs $library" ;; esac
 done
+if [ -f "$lib/libstipple-views.so" ]; then
+  for library in $(needed "$lib/libstipple-views.so"); do
+    case $library in *OpenGL* | libGL* | libX11* | libvtkRenderingUI*) fail "libstipple-views.so needs $library" ;; esac
+  done
+fi
 readelf -SW "$bin/raytracer" | grep -q stipple_desc || fail "raytracer is not instrumented"
 [ $bad = 0 ] && echo "libraries need what they may"
 exit $bad

@@ -76,7 +76,7 @@ class EverySample : public testing::TestWithParam<SampleEntry> {
 };
 
 TEST_P(EverySample, TextsDoNotOverlap) {
-  for (const ViewEntry& view : Views()) {
+  for (const PanelEntry& view : Panels()) {
     const std::vector<Box> boxes = TextBoxes(view.scene(input_));
     for (std::size_t i = 0; i < boxes.size(); ++i)
       for (std::size_t k = i + 1; k < boxes.size(); ++k)
@@ -86,7 +86,7 @@ TEST_P(EverySample, TextsDoNotOverlap) {
 }
 
 TEST_P(EverySample, NothingLeavesThePicture) {
-  for (const ViewEntry& view : Views()) {
+  for (const PanelEntry& view : Panels()) {
     const Scene scene = view.scene(input_);
     for (const Point& point : Corners(scene)) {
       EXPECT_TRUE(std::isfinite(point.x) && std::isfinite(point.y)) << view.name;

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+#include "analysis/stats/imbalance_split.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "analysis/stats/number.h"
+#include "analysis/stats/states.h"
+#include "analysis/trace/demangle.h"
+
+namespace stipple {
+namespace {
+
+// Below this share of the span nothing is said to be more.
+constexpr double kNotableShare = 0.005;
+
+double Seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
+
+/// Of one state: that of the busiest rank less the mean.
+double AboveMean(const std::vector<RankStates>& states, const RankStates& busiest,
+                 std::int64_t (*of)(const RankStates&)) {
+  double sum = 0;
+  for (const RankStates& s : states) sum += Seconds(of(s));
+  return Seconds(of(busiest)) - sum / static_cast<double>(states.size());
+}
+
+/// Work of one region.
+struct RegionWork {
+  double own_s = 0;
+  double own_calls = 0;
+  double all_s = 0;
+  double all_calls = 0;
+};
+
+/// A sum over regions, and the region with most of it.
+struct RegionSum {
+  double seconds = 0;
+  double most_s = 0;
+  std::uint32_t region = 0;
+  void Add(std::uint32_t r, double more_s) {
+    seconds += more_s;
+    if (more_s <= most_s) return;
+    most_s = more_s;
+    region = r;
+  }
+};
+
+/// What comes of more visits, and what of longer ones.
+std::pair<RegionSum, RegionSum> WorkOf(const Trace& trace, int busiest,
+                                       std::span<const RankRegions> regions) {
+  std::map<std::uint32_t, RegionWork> work;
+  for (const RankRegions& rank : regions)
+    for (const RegionPart& p : rank.parts) {
+      if (trace.regions()[p.region].kind == RegionKind::kMpi) continue;
+      RegionWork& w = work[p.region];
+      w.all_s += p.seconds;
+      w.all_calls += static_cast<double>(p.calls);
+      if (rank.rank != busiest) continue;
+      w.own_s += p.seconds;
+      w.own_calls += static_cast<double>(p.calls);
+    }
+  RegionSum more;
+  RegionSum dearer;
+  const auto ranks = static_cast<double>(regions.size());
+  for (const auto& [region, w] : work) {
+    const double visit_s = w.all_calls > 0 ? w.all_s / w.all_calls : 0;
+    const double more_s = (w.own_calls - w.all_calls / ranks) * visit_s;
+    more.Add(region, more_s);
+    dearer.Add(region, w.own_s - w.all_s / ranks - more_s);
+  }
+  return {more, dearer};
+}
+
+}  // namespace
+
+std::string_view NameOf(SplitKind kind) {
+  constexpr std::array<std::string_view, kSplitKinds> kNames = {"more-work", "dearer-work",
+                                                                "system", "messages", "waiting"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+std::vector<int> ComparedRanks(const Trace& trace, const Selection& selection) {
+  std::vector<int> ranks;
+  for (const Location& l : trace.locations())
+    if (l.IsMain() && !trace.ProcessOf(l).is_host && selection.HasRank(l.rank))
+      ranks.push_back(l.rank);
+  return ranks;
+}
+
+std::vector<SplitPart> SplitOf(const Analysis& analysis, const Selection& selection,
+                               const Phase& phase, std::uint32_t index,
+                               std::span<const RankRegions> regions) {
+  if (regions.size() < 2) return {};
+  std::vector<int> ranks;
+  for (const RankRegions& r : regions) ranks.push_back(r.rank);
+  std::ranges::sort(ranks);
+  const std::vector<RankStates> states =
+      StatesOf(analysis, {phase.begin_ns, phase.end_ns, std::move(ranks)});
+  const RankStates& busiest = *std::ranges::max_element(states, {}, &RankStates::user_ns);
+  const auto [more, dearer] = WorkOf(analysis.trace, busiest.rank, regions);
+  const double user_s = AboveMean(states, busiest, [](const RankStates& s) { return s.user_ns; });
+  const double span_s = Seconds(std::min(analysis.trace.SpanNs(), selection.end_ns) -
+                                std::max<std::int64_t>(0, selection.begin_ns));
+  std::vector<SplitPart> split;
+  const auto add = [&](SplitKind what, double seconds, std::uint32_t region) {
+    split.push_back({index, what, seconds, seconds / span_s, busiest.rank, region});
+  };
+  add(SplitKind::kMoreWork, more.seconds, more.region);
+  add(SplitKind::kDearerWork, user_s - more.seconds, dearer.region);
+  if (busiest.system_ns)
+    add(SplitKind::kSystem,
+        AboveMean(states, busiest, [](const RankStates& s) { return s.system_ns.value_or(0); }), 0);
+  add(SplitKind::kMessages,
+      AboveMean(states, busiest, [](const RankStates& s) { return s.message_ns; }), 0);
+  add(SplitKind::kWaiting,
+      AboveMean(states, busiest, [](const RankStates& s) { return s.idle_ns; }), 0);
+  return split;
+}
+
+Table ImbalanceSplitTable(const Trace& trace, const std::vector<SplitPart>& split) {
+  Table table{"imbalance-split",
+              TableShape::kRows,
+              {{"phase"}, {"what"}, {"seconds"}, {"share"}, {"rank"}, {"region"}},
+              {}};
+  for (const SplitPart& p : split)
+    table.rows.push_back(RowOf(std::int64_t{p.phase}, std::string(NameOf(p.what)), p.seconds,
+                               p.share, std::int64_t{p.rank},
+                               p.region == 0 ? Cell() : Cell(trace.regions()[p.region].name)));
+  return table;
+}
+
+std::string ImbalanceSplitSentence(const Trace& trace, const std::vector<Phase>& phases,
+                                   const std::vector<SplitPart>& split) {
+  const auto most = std::ranges::max_element(
+      split, {}, [](const SplitPart& p) { return p.what == SplitKind::kWaiting ? 0 : p.seconds; });
+  if (most == split.end() || most->what == SplitKind::kWaiting || most->share < kNotableShare)
+    return "No rank is notably busier than the mean.";
+  std::string what;
+  const std::string region =
+      most->region == 0 ? "functions" : ShortName(trace.regions()[most->region].name);
+  switch (most->what) {
+    case SplitKind::kMoreWork:
+      what = "calls " + region + " more often";
+      break;
+    case SplitKind::kDearerWork:
+      what = "takes longer in " + region;
+      break;
+    case SplitKind::kSystem:
+      what = "is longer in the kernel or off its processor";
+      break;
+    default:
+      what = "spends more on messages";
+  }
+  const Phase& phase = phases[most->phase];
+  const std::string rank = trace.IsHost(most->rank) ? std::string("The host")
+                           : trace.HasHost()        ? "Node " + std::to_string(most->rank)
+                                                    : "Rank " + std::to_string(most->rank);
+  return rank + " " + what + " than the mean, by " + FormatSeconds(most->seconds) + " between " +
+         FormatSeconds(Seconds(phase.begin_ns)) + " and " + FormatSeconds(Seconds(phase.end_ns)) +
+         ".";
+}
+
+}  // namespace stipple

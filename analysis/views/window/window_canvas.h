@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// A picture of a run in a window of the X server, without events: what the window handles events
+// for, and what frame times are measured of.
+#ifndef STIPPLE_ANALYSIS_VIEWS_WINDOW_WINDOW_CANVAS_H
+#define STIPPLE_ANALYSIS_VIEWS_WINDOW_WINDOW_CANVAS_H
+
+#include <vtkNew.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
+#include <vtkSmartPointer.h>
+
+#include <string>
+#include <vector>
+
+#include "analysis/stats/window_source.h"
+#include "analysis/views/window/controller.h"
+#include "analysis/views/window/view_state.h"
+#include "analysis/views/window/window_item.h"
+#include "analysis/views/window/window_scene.h"
+
+namespace stipple {
+
+class WindowCanvas {
+ public:
+  WindowCanvas(const WindowSource& source, std::vector<int> ranks, int width, int height);
+  ~WindowCanvas();
+  WindowCanvas(const WindowCanvas&) = delete;
+  WindowCanvas& operator=(const WindowCanvas&) = delete;
+
+  void Render();
+  vtkRenderWindow* window() { return window_; }
+  ViewState& state() { return state_; }
+  WindowScene& scene() { return scene_; }
+  Controller& controller() { return controller_; }
+  std::size_t corner_count() const { return item_->corner_count(); }
+
+ private:
+  const WindowSource& source_;
+  ViewState state_;
+  WindowScene scene_;
+  Controller controller_;
+  vtkSmartPointer<vtkRenderWindow> window_;
+  vtkSmartPointer<vtkRenderer> renderer_;
+  vtkNew<WindowItem> item_;
+  std::string title_;
+};
+
+}  // namespace stipple
+
+#endif
