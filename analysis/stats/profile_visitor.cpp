@@ -13,6 +13,25 @@ std::vector<std::uint32_t> ProfileVisitor::OpenStack() const {
   return open;
 }
 
+std::vector<OpenVisit> ProfileVisitor::OpenVisits() const {
+  std::vector<OpenVisit> open;
+  for (const Frame* f = stack_.data(); f++ != hot_.top;)
+    open.push_back({f->enter, static_cast<std::uint64_t>(f->region - regions_.data())});
+  return open;
+}
+
+void ProfileVisitor::Open(std::span<const OpenVisit> visits) {
+  for (const OpenVisit& v : visits) {
+    if (hot_.top == hot_.limit) {
+      hot_.top = Grow();
+      hot_.limit = Limit();
+    }
+    RegionTicks* const region = &regions_[v.region + 1 < regions_.size() ? v.region : 0];
+    ++region->open;
+    *++hot_.top = {region, hot_.last};
+  }
+}
+
 /// Ends the frame on top, which has no leave of its own.
 void ProfileVisitor::PopLeft(Hot& hot, std::uint64_t ticks) {
   if (hot.top->region->is_watched != 0)

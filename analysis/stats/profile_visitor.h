@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "analysis/trace/anchors.h"
 #include "analysis/trace/jump_points.h"
 #include "analysis/trace/mpi_collector.h"
 #include "analysis/trace/scan.h"
@@ -124,6 +125,15 @@ class ProfileVisitor {
   /// The next events of at.Place() are met at at.now or later with these regions open, outermost
   /// first, by the process's numbers. Those of contexts that wait are not among them.
   std::vector<std::uint32_t> OpenStack() const;
+  /// The same with the times at which they were entered.
+  std::vector<OpenVisit> OpenVisits() const;
+  /// Begins with these.
+  void Open(std::span<const OpenVisit> visits);
+  /// Ticks of the selected span.
+  std::uint64_t begin() const { return hot_.begin; }
+  std::uint64_t end() const { return hot_.end; }
+  /// It wants to see all there is.
+  static constexpr bool Done() { return false; }
   /// Whether these regions are all that the events to come depend on: no jump point and no other
   /// context has been seen. Else a scan that begins at the place may see a jump that it cannot
   /// follow, and must begin further in front.
