@@ -6,6 +6,7 @@
 
 #include "analysis/report/text.h"
 #include "analysis/stats/tables.h"
+#include "analysis/stats/team.h"
 #include "analysis/tools/command.h"
 #include "analysis/tools/progress.h"
 #include "analysis/tools/selection_options.h"
@@ -76,7 +77,12 @@ int RunStats(const Arguments& arguments) {
   ProgressLine progress;
   const Trace trace = Trace::Open(archive, progress.meter());
   const Selection selection = selected.For(trace);
-  const Analysis analysis(trace);
+  const Team team = Team::OfEnvironment();
+  const bool together =
+      team.size > 1 && trace.index() == nullptr && !trace.header_health().Running();
+  if (together && team.rank != 0) LeaveShare(trace, team);
+  if (team.rank != 0) return 0;
+  const Analysis analysis = together ? Analysis(trace, ScanTogether(trace, team)) : Analysis(trace);
   const TableAnswer answer = entry.make(analysis, selection, {per_rank, window_ns});
   progress.Stop();
   const std::string nothing = NothingText(trace, selection);
