@@ -10,8 +10,12 @@
 #include <vector>
 
 #include "analysis/stats/blame.h"
+#include "analysis/stats/critical_path.h"
+#include "analysis/stats/imbalance_split.h"
 #include "analysis/stats/kernel_time.h"
+#include "analysis/stats/phases.h"
 #include "analysis/stats/selection.h"
+#include "analysis/stats/time_sums.h"
 #include "analysis/stats/waits.h"
 #include "analysis/trace/health.h"
 #include "analysis/trace/mpi_activity.h"
@@ -71,8 +75,12 @@ struct BudgetStep {
   double mean_ns = 0;
 };
 
+struct LocationScan;
+
 struct Analysis {
   explicit Analysis(const Trace& of);
+  /// From the scans of all locations, wherever they were made.
+  Analysis(const Trace& of, std::vector<LocationScan> scans);
 
   const Trace& trace;
   std::vector<LocationProfile> profiles;  // by location, of the whole time
@@ -80,12 +88,18 @@ struct Analysis {
   Array<CallWait> waits;          // by call of mpi
   std::vector<BudgetStep> steps;  // in order of time
   KernelTime kernel;              // by location
+  TimeSums sums;                  // for pictures of any span
   TraceHealth health;             // all that is wrong with the archive
   // What not everyone asks for: made when it is, and then kept in the index as well.
-  mutable std::optional<std::vector<Blame>> blames;  // of the whole run; ask BlameOf
+  // Of the whole run; ask CausesOf.
+  mutable std::optional<std::vector<Blame>> blames;
+  mutable std::optional<std::vector<PathPiece>> path;
+  mutable std::optional<std::vector<PathRow>> path_rows;
+  mutable std::optional<std::vector<Phase>> phases;
+  mutable std::optional<std::vector<SplitPart>> split;
 
  private:
-  void ScanAll();
+  void Join(std::vector<LocationScan> scans);
 };
 
 /// Those of the whole run are made once.

@@ -73,7 +73,10 @@ LocationProfile ProfileOf(const Trace& trace, const Location& location,
                                : std::max(trace.TicksAt(location, selection.begin_ns),
                                           trace.kept() ? location.first_ticks : 0),
                          whole ? kNoTickLimit : trace.TicksAt(location, selection.end_ns), nullptr);
-  trace.Scan(location, visitor);
+  if (whole)
+    trace.Scan(location, visitor);
+  else
+    trace.ScanSpan(location, visitor.begin(), visitor.end(), visitor);
   visitor.Finish(location.last_ticks);
   return ProfileFrom(trace, location, visitor);
 }
@@ -106,7 +109,8 @@ Table ProfileTable(const Analysis& analysis, const Selection& selection, bool pe
   std::vector<std::tuple<double, int, std::size_t>> order;  // most exclusive time first
   for (const auto& [rank, times] : by_rank)
     for (std::size_t r = 0; r < times.size(); ++r)
-      if (times[r].calls != 0 || times[r].inclusive_ns > 0)
+      if ((times[r].calls != 0 || times[r].inclusive_ns > 0) &&
+          selection.HasRegion(static_cast<std::uint32_t>(r)))
         order.emplace_back(-times[r].exclusive_ns, rank, r);
   std::ranges::sort(order);
   for (const auto& [ignored, rank, r] : order) {

@@ -9,8 +9,8 @@
 // thread's next chunk. An event whose clock was not read lies between its clocked neighbours, in
 // equal steps: an estimate; the neighbours are its bounds.
 //
-// The loop touches each word once and keeps its state in registers: about 2 ns an event. Whatever
-// is rare (records, unclocked runs, damage) is out of line.
+// Whatever is rare (records, unclocked runs, damage) is out of line, and state is in registers.
+// Most events are plain: a visitor that wants them gets many at once, after one test (HasBlocks).
 #ifndef STIPPLE_ANALYSIS_TRACE_SCAN_H
 #define STIPPLE_ANALYSIS_TRACE_SCAN_H
 
@@ -73,7 +73,7 @@ class ChunkWords {
 
 /// Where a scan can be taken up again, in a few words that can be kept: a scan from here meets the
 /// same events with the same times. What a visitor had gathered is the visitor's matter: see
-/// ProfileVisitor::OpenStack.
+/// ProfileVisitor::OpenVisits.
 struct ScanPlace {
   std::uint64_t chunk = 0;
   std::uint64_t words = 0;  // of the chunk that are behind
