@@ -81,6 +81,7 @@ struct Plot {
   const Analysis& analysis;
   const Selection& selection;
   const PlotChoice& choice;
+  const SelectionOptions& selected;
   PlotInput input{};
   std::string headline{};
 
@@ -89,7 +90,8 @@ struct Plot {
     const bool first = view.by_rank && entry.per_rank;
     for (const bool per_rank : {first, !first}) {
       if (per_rank && !entry.per_rank) continue;
-      TableAnswer answer = entry.make(analysis, selection, TableOptions{per_rank, 0});
+      TableAnswer answer =
+          entry.make(analysis, selection, TableOptions{per_rank, selected.WindowNs()});
       if (view.fits(answer.table)) return answer;
     }
     return std::nullopt;
@@ -109,10 +111,7 @@ struct Plot {
   }
 
   void AddTable(const TableEntry& entry, Choices choices) {
-    if (!selection.WholeTime() && (entry.takes & kTakesSpan) == 0)
-      throw InputError("--from, --to", fmt::format("table '{}' is of the whole run", entry.name));
-    if (selection.ranks && (entry.takes & kTakesRanks) == 0)
-      throw InputError("--ranks", fmt::format("table '{}' is of all ranks", entry.name));
+    selected.RefuseFor(entry);
     std::optional<TableAnswer> answer = Fitting(entry, choice);
     if (!answer) Refuse(entry, choices);
     input.tables.push_back(std::move(answer->table));
@@ -126,10 +125,13 @@ struct Plot {
     const double end_s = selection.end_ns == Selection::kNoEnd
                              ? run_s
                              : std::min(run_s, static_cast<double>(selection.end_ns) * 1e-9);
-    input.timeline = TimelineOf(analysis, begin_s, std::max(begin_s, end_s), kColumns);
+    input.timeline = TimelineOf(analysis, begin_s, std::max(begin_s, end_s),
+                                // Tables need the ranks' names and the span only.
+                                choice.fits == nullptr ? kColumns : 1);
     KeepRanks();
     input.zoomed = !selection.WholeTime();
-    if (input.zoomed) input.visits = VisitBarsOf(analysis.trace, input.timeline, kMostVisits);
+    if (input.zoomed && choice.fits == nullptr)
+      input.visits = VisitBarsOf(analysis.trace, input.timeline, kMostVisits);
   }
 
   /// Rows that were not asked for leave, and their messages with them.
@@ -178,7 +180,7 @@ void AddOptions(CLI::App& app, PlotOptions& options) {
   app.add_option("-o", options.output, "the picture, by its ending (default: VIEW.svg)")
       ->type_name("F.svg|pdf|png");
   app.add_flag("--mono", options.mono, "patterns instead of colours");
-  options.selected.AddTo(app);
+  options.selected.AddTo(app, kTakesEverything);
   app.add_option("--at", options.at_s, "the moment that dials, leds, status and kiviat show")
       ->type_name("SECONDS");
   app.add_option("--x", options.x, "column along the x axis (graph)")->type_name("COLUMN");
@@ -193,12 +195,14 @@ void CheckOutput(const std::string& output) {
 
 Plot Compute(const Analysis& analysis, const Selection& selection, const PlotOptions& options,
              const PlotChoice& choice, Choices choices) {
-  Plot plot{analysis, selection, choice};
+  Plot plot{analysis, selection, choice, options.selected};
   plot.input.view = options.view;
   plot.input.mono = options.mono;
   plot.input.at_s = options.at_s;
   plot.input.x = options.x;
   plot.input.columns = Split(options.y);
+  if (choice.fits == nullptr)
+    options.selected.RefuseFor({choice.name, nullptr, choice.description, false, kTakesPlace});
   if (choice.fits == nullptr && !options.tables.empty())
     throw InputError("--table", fmt::format("view '{}' shows no table", choice.name));
   const std::string names = options.tables.empty() ? std::string(choice.tables) : options.tables;
