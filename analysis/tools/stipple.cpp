@@ -11,6 +11,9 @@
 #include "analysis/trace/input_error.h"
 
 namespace stipple {
+
+int RunCompare(const Arguments& arguments);
+
 namespace {
 
 constexpr Command kCommands[] = {
@@ -24,6 +27,7 @@ constexpr Command kCommands[] = {
     {"report", RunReport, "a self-contained HTML page"},
     {"view", RunView, "an interactive window on a run"},
     {"compact", RunCompact, "make an archive smaller"},
+    {"compare", RunCompare, "two runs on one scale: what changed"},
     {"exemplar", RunExemplar, "the ray tracer's experiments: charts on a page"},
 };
 
