@@ -1,61 +1,21 @@
 // SPDX-License-Identifier: MIT
-// The page from top to bottom: what was found, the run in facts, what everyone did and when, who
-// was waited for, the worst period, who talked to whom, where the time went in the program.
+// The frame: what was found, the run in facts, the way to the pages, the bar with the range.
 #include <fmt/format.h>
 
-#include <utility>
+#include <vector>
 
 #include "analysis/report/html.h"
-#include "analysis/report/html_quality.h"
+#include "analysis/report/html_pages.h"
 #include "analysis/report/html_style.h"
-#include "analysis/report/html_table.h"
-#include "analysis/stats/number.h"
+#include "analysis/report/page_data.h"
 #include "analysis/views/layout.h"
-#include "analysis/views/palette.h"
-#include "analysis/views/svg.h"
 #include "analysis/views/svg_write.h"
-#include "analysis/views/view_list.h"
 
 namespace stipple {
 namespace {
 
-ViewInput ViewsOf(const ReportInput& input) {
-  return {&input.timeline, &input.detail, &input.states,
-          &input.messages, &input.volume, &input.finding};
-}
-
-/// A view with its heading; empty where the view has nothing to show.
-struct Panel {
-  std::string heading;
-  std::string style;  // class of the section
-  bool note_at_end = false;
-  std::string beside;  // between heading and note
-  std::string below;   // under the picture
-};
-
-std::string PanelText(const Panel& panel, const Scene& scene) {
-  if (scene.layers.empty()) return {};
-  std::string text = fmt::format(
-      "<section class=\"{0}\" aria-labelledby=\"h-{1}\"><header class=\"panel{2}\"><h2 "
-      "id=\"h-{1}\">{3}</h2>{4}",
-      panel.style, scene.name, panel.note_at_end ? " end" : "", EscapeMarkup(panel.heading),
-      panel.beside);
-  if (!scene.note.empty())
-    text += fmt::format("<span class=\"note\">{}</span>", EscapeMarkup(scene.note));
-  return text + "</header>\n<figure>" + DrawSvg(scene) + "</figure>" + panel.below + "</section>\n";
-}
-
-/// What the words leave open: calls into MPI count as messages unless a partner is waited for.
-constexpr std::string_view kStateHints[kStateCount] = {"", "", " (in MPI, not waiting)",
-                                                       " (waiting)"};
-
-std::string Legend(bool hints) {
-  std::string text = "<ul class=\"legend\">";
-  for (std::size_t s = 0; s < kStateCount; ++s)
-    text += fmt::format("<li><i class=\"s{}\"></i>{}{}</li>", s, kStateNames[s],
-                        hints ? kStateHints[s] : "");
-  return text + "</ul>";
-}
+constexpr std::size_t kLargestPage = 990'000;
+constexpr std::size_t kLeastData = 60'000;
 
 std::string Headline(const ReportInput& input) {
   return input.finding.sentence.empty() ? input.title : input.finding.sentence;
@@ -81,76 +41,69 @@ std::string Header(const ReportInput& input) {
   return text + FactsLine(input) + "</header>\n";
 }
 
-/// World rank of the host; -1: none.
-int HostOf(const Timeline& timeline) {
-  for (const TimelineRow& row : timeline.rows)
-    if (row.is_host) return row.rank;
-  return -1;
+/// Hidden until the script shows it: without it nothing here works.
+std::string RangeBar(const ReportInput& input) {
+  if (input.timeline.rows.empty() || !(input.timeline.end_s > input.timeline.begin_s)) return {};
+  constexpr std::string_view kButtons[][3] = {
+      {"earlier", "Earlier: half a range to the left", "\u2190"},
+      {"later", "Later: half a range to the right", "\u2192"},
+      {"closer", "Closer: half of the range", "+"},
+      {"wider", "Wider: twice the range", "\u2212"},
+      {"whole", "Show the whole run", "whole run"}};
+  std::string text =
+      "<div id=\"range-bar\" role=\"region\" aria-label=\"Part of the run that is shown\" hidden>"
+      "<div id=\"overview\" title=\"Drag to choose a part of the run\" aria-hidden=\"true\">"
+      "<canvas></canvas><div class=\"box\" hidden></div><div class=\"moment\" hidden></div></div>"
+      "<span id=\"range-text\"></span><div class=\"buttons\">";
+  for (const auto& [id, label, sign] : kButtons)
+    text += fmt::format(
+        "<button type=\"button\" id=\"range-{}\" aria-label=\"{}\" title=\"{}\">{}</button>", id,
+        label, label, sign);
+  return text +
+         "</div><p id=\"range-said\" class=\"unseen\" role=\"status\" aria-live=\"polite\"></p>"
+         "</div>\n";
 }
 
-/// Timeline and bars, row by row side by side; below, curves on the timeline's axis.
-std::string Overview(const ReportInput& input, const ViewInput& views) {
-  if (!HasRows(views.timeline)) return {};
-  const std::string noun(NounFor(input.timeline));
-  std::string text = "<div class=\"line rows\">";
-  const bool one = input.timeline.rows.size() == 1;
-  text +=
-      PanelText({one ? "State over time" : "State of each " + noun, "main", true, Legend(!one), {}},
-                TimelineView(views));
-  text += PanelText({one ? "Whole run" : "Whole run, by " + noun, "side", true, {}, {}},
-                    StateBarsView(views));
-  text += "</div>\n";
-  const std::string curves =
-      PanelText({"Processor utilisation", "", false, {}, {}}, UtilisationView(views)) +
-      PanelText({"Message load", "", false, {}, {}}, MessageLoadView(views));
-  const std::string waited =
-      PanelText({"Who was waited for", "side", true, {}, {}}, WaitedForView(views));
-  if (curves.empty() && waited.empty())
-    return text + StatesDetails(input.states, noun, HostOf(input.timeline));
-  return text + "<div class=\"line\"><div class=\"main\">" + curves +
-         StatesDetails(input.states, noun, HostOf(input.timeline)) + "</div>" + waited + "</div>\n";
-}
+struct Written {
+  const PageEntry* page;
+  std::string content;
+};
 
-std::string Communication(const ReportInput& input, const ViewInput& views) {
-  std::string panels;
-  if (input.detail.message_count > 0)
-    panels += PanelText(
-        {"Detail " + FormatSpan(input.detail.begin_s, input.detail.end_s), "detail", false, {}, {}},
-        DetailView(views));
-  panels += PanelText({"Messages", "matrix", true, {}, MatrixDetails(input.messages, false)},
-                      MessageMatrixView(views));
-  panels += PanelText({"Volume", "matrix", true, {}, MatrixDetails(input.volume, true)},
-                      VolumeMatrixView(views));
-  return panels.empty() ? "" : "<div class=\"line lower\">" + panels + "</div>\n";
-}
-
-std::string Quality(const ReportInput& input) {
-  std::string text = "<footer class=\"quality\" id=\"quality\">";
-  if (input.health.empty())
-    return text + "Data quality: nothing was lost; the archive is sound.</footer>\n";
-  text += "<strong class=\"problems\">Data quality</strong><ul>";
-  for (const std::string& line : input.health) text += "<li>" + EscapeMarkup(line) + "</li>";
-  return text + "</ul></footer>\n";
+std::string Navigation(const std::vector<Written>& pages) {
+  std::string text = "<nav aria-label=\"Pages\"><ul>";
+  for (const Written& one : pages)
+    text += fmt::format("<li><a href=\"#{}\">{}</a></li>", one.page->id, one.page->title);
+  return text + "</ul></nav>\n";
 }
 
 }  // namespace
 
 std::string ReportPage(const ReportInput& input) {
   const ViewInput views = ViewsOf(input);
+  std::vector<Written> pages;
+  for (const PageEntry& page : Pages())
+    if (std::string content = page.content(input, views); !content.empty())
+      pages.push_back({&page, std::move(content)});
   std::string page =
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<title>";
   page += EscapeMarkup(Headline(input)) + "</title>\n<style>" + PageStyle(input.mono) +
-          "</style></head><body>\n";
+          "</style></head><body>\n<a class=\"skip\" href=\"#summary\">To the summary</a>\n";
   if (input.mono) page += MonoPatterns();
-  page += Header(input) + "<main>\n" + Overview(input, views) + Communication(input, views);
-  const std::string waits = WaitsSection(input.waits, input.finding.culprit,
-                                         NounFor(input.timeline), HostOf(input.timeline));
-  page += ProfileSection(input.profile) + waits + AccuracySection(input.accuracy) + "</main>\n" +
-          Quality(input);
+  page += Header(input) + Navigation(pages) + RangeBar(input) + "<main>\n";
+  for (const Written& one : pages)
+    page += fmt::format(
+        "<section class=\"page\" id=\"{0}\" aria-labelledby=\"p-{0}\">\n<h2 "
+        "id=\"p-{0}\">{1}</h2>\n{2}</section>\n",
+        one.page->id, one.page->title, one.content);
+  page += "</main>\n";
+  const std::string_view script = PageScript();
+  const std::size_t used = page.size() + script.size();
   page +=
-      "<script type=\"application/json\" id=\"hover\">" + HoverData(views) + "</script>\n<script>";
-  page += PageScript();
+      "<script type=\"application/json\" id=\"data\">" +
+      PageData(input, views, std::max(kLeastData, kLargestPage - std::min(used, kLargestPage))) +
+      "</script>\n<script>";
+  page += script;
   return page + "</script>\n</body></html>\n";
 }
 

@@ -30,7 +30,8 @@ std::string Fact(std::string_view what, const std::string& value) {
 
 std::string Facts(const RunAccuracy& a) {
   const bool known = a.calibrated && a.time_s > 0;
-  std::string text = "<table><tbody>\n" + Fact("clock", EscapeMarkup(a.clock));
+  std::string text = "<table><caption class=\"unseen\">How exact this run is</caption><tbody>\n" +
+                     Fact("clock", EscapeMarkup(a.clock));
   text += Fact("what recording took",
                known ? fmt::format("{}, {} of the time that was recorded", FormatSeconds(a.cost_s),
                                    PercentOf(a.cost_s / a.time_s))
@@ -50,7 +51,8 @@ std::string Facts(const RunAccuracy& a) {
 std::string Steps(const RunAccuracy& a) {
   if (a.steps.empty()) return {};
   std::string text =
-      "<table><thead><tr><th scope=\"col\">function</th><th scope=\"col\">from here on</th>"
+      "<table><caption class=\"unseen\">Steps of the budget</caption><thead><tr><th "
+      "scope=\"col\">function</th><th scope=\"col\">from here on</th>"
       "<th scope=\"col\" class=\"n\">at</th><th scope=\"col\" class=\"n\">visits until then</th>"
       "<th scope=\"col\" class=\"n\">mean visit</th></tr></thead><tbody>\n";
   for (std::size_t i = 0; i < std::min(a.steps.size(), kMostSteps); ++i) {
@@ -84,8 +86,9 @@ std::string Picture(const RunAccuracy& a) {
 
 std::string AccuracySection(const RunAccuracy& a) {
   if (a.clock.empty()) return {};
-  return "<section class=\"accuracy\" aria-labelledby=\"h-accuracy\"><header class=\"panel\"><h2 "
-         "id=\"h-accuracy\">How exact this run is</h2><span class=\"note\">functions with over 1% "
+  return "<section class=\"panel accuracy\" aria-labelledby=\"h-accuracy\"><header "
+         "class=\"panel\"><h3 "
+         "id=\"h-accuracy\">How exact this run is</h3><span class=\"note\">functions with over 1% "
          "of "
          "the time; all: <code>stipple stats ARCHIVE --table overhead</code></span></header>\n"
          "<div class=\"line\"><div class=\"main\">" +

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Style sheet, script and hover data of the report page.
+// Style sheet and script of the report page; their texts stand in page/.
 #ifndef STIPPLE_ANALYSIS_REPORT_HTML_STYLE_H
 #define STIPPLE_ANALYSIS_REPORT_HTML_STYLE_H
 
 #include <string>
 #include <string_view>
-
-#include "analysis/views/view_list.h"
 
 namespace stipple {
 
@@ -16,11 +14,9 @@ std::string PageStyle(bool mono);
 /// Patterns that the monochrome style refers to.
 std::string_view MonoPatterns();
 
-/// What the page can do beyond being read: values under the pointer, tables sorted by a column.
+/// What the page can do beyond being read: pages, zoom, a range that drives the panels, values
+/// under the pointer, tables sorted by a column.
 std::string_view PageScript();
-
-/// Shares per row and column for the pointer, as JSON; at most about 60 kB.
-std::string HoverData(const ViewInput& input);
 
 }  // namespace stipple
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "analysis/stats/number.h"
@@ -51,12 +52,20 @@ std::string DoubtfulCell(const Cell& cell, const Cell& low, const Cell& high) {
                      FormatSeconds(seconds), FormatSeconds(doubt));
 }
 
-std::string ShareCell(double value, double whole, double largest) {
-  const double share = whole > 0 ? value / whole : 0;
+/// Inclusive time pale, exclusive time before it; the number is the exclusive share.
+std::string ShareCell(double exclusive, double inclusive, double whole, double largest) {
+  const auto width = [largest](double value) {
+    return largest > 0 ? std::clamp(value / largest, 0.0, 1.0) * 100 : 0;
+  };
   return fmt::format(
-      "<td class=\"share\"><span><i style=\"width:{:.1f}%\" "
-      "aria-hidden=\"true\"></i>{}</span></td>",
-      largest > 0 ? value / largest * 78 : 0, FormatPercent(share));
+      "<td class=\"share\"><span><i aria-hidden=\"true\"><b style=\"width:{:.1f}%\"></b><b "
+      "style=\"width:{:.1f}%\"></b></i>{}</span></td>",
+      width(inclusive), width(exclusive), FormatPercent(whole > 0 ? exclusive / whole : 0));
+}
+
+std::string NumberHead(std::string_view name, bool sorted = false) {
+  return fmt::format("<th scope=\"col\" class=\"n\" data-sort=\"number\"{}>{}</th>",
+                     sorted ? " aria-sort=\"descending\"" : "", name);
 }
 
 std::string FileName(const std::string& path) {
@@ -85,16 +94,85 @@ std::string FunctionCell(const Table& profile, const Row& row) {
   return cell + "</th>" + PlaceCell(profile, row);
 }
 
-std::string ProfileRow(const Table& profile, const Row& row, double whole, double largest) {
+/// Least, mean and most over the ranks, hosts left out.
+struct Spread {
+  double least = 0, mean = 0, most = 0;
+};
+Spread SpreadOf(const FunctionSpread& function, const std::vector<TimelineRow>& rows) {
+  Spread spread{std::numeric_limits<double>::max(), 0, 0};
+  double count = 0;
+  for (std::size_t i = 0; i < std::min(rows.size(), function.seconds.size()); ++i) {
+    if (rows[i].is_host) continue;
+    spread.least = std::min(spread.least, function.seconds[i]);
+    spread.most = std::max(spread.most, function.seconds[i]);
+    spread.mean += function.seconds[i];
+    ++count;
+  }
+  if (count == 0) return {};
+  spread.mean /= count;
+  return spread;
+}
+
+constexpr std::size_t kMostSparkBars = 48;
+constexpr double kSparkWidth = 96, kSparkHeight = 18;
+
+/// A bar for each rank, the host last; of very many ranks for the mean of neighbours.
+std::string Spark(const FunctionSpread& function) {
+  const std::size_t ranks = function.seconds.size();
+  const std::size_t bars = std::min(ranks, kMostSparkBars);
+  std::vector<double> values(bars), counts(bars);
+  for (std::size_t i = 0; i < ranks; ++i) {
+    values[i * bars / ranks] += function.seconds[i];
+    ++counts[i * bars / ranks];
+  }
+  double largest = 0;
+  for (std::size_t i = 0; i < bars; ++i) largest = std::max(largest, values[i] /= counts[i]);
+  if (bars == 0 || largest <= 0) return "<td></td>";
+  const double pitch = std::floor(std::min(10.0, kSparkWidth / static_cast<double>(bars)));
+  std::string path;
+  for (std::size_t i = 0; i < bars; ++i) {
+    const double height = std::round(values[i] / largest * kSparkHeight);
+    if (height > 0)
+      path += fmt::format("M{} {}h{}v-{}h-{}z", static_cast<double>(i) * pitch, kSparkHeight,
+                          std::max(1.0, pitch - 1), height, std::max(1.0, pitch - 1));
+  }
+  return fmt::format(
+      "<td class=\"spark\"><svg viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "
+      "aria-hidden=\"true\"><path d=\"{2}\"/></svg></td>",
+      kSparkWidth, kSparkHeight, path);
+}
+
+constexpr double kNoticeable = 1.25;  // most over mean
+
+std::string SpreadCells(const FunctionSpread* function, const std::vector<TimelineRow>& rows) {
+  if (rows.size() < 2) return {};
+  if (function == nullptr) return "<td></td><td></td><td></td><td></td><td></td>";
+  const Spread spread = SpreadOf(*function, rows);
+  if (!(spread.mean > 0))
+    return "<td></td><td></td><td></td><td data-v=\"\"></td>" + Spark(*function);
+  const double ratio = spread.most / spread.mean;
+  return TimeCell(spread.least) + TimeCell(spread.mean) + TimeCell(spread.most) +
+         fmt::format("<td class=\"n{}\" data-v=\"{:.4g}\">{:.2f}</td>",
+                     ratio >= kNoticeable ? " uneven" : "", ratio, ratio) +
+         Spark(*function);
+}
+
+struct ProfileScale {
+  double whole = 0;    // of all exclusive times
+  double largest = 0;  // inclusive time
+};
+
+std::string ProfileRow(const Table& profile, const Row& row, const ProfileScale& scale) {
   const Cell calls = CellOf(profile, row, "calls");
   const Cell exclusive = CellOf(profile, row, "exclusive_s");
+  const Cell inclusive = CellOf(profile, row, "inclusive_s");
   const auto count = static_cast<std::int64_t>(CellNumber(calls));
-  return "<tr>" + FunctionCell(profile, row) +
+  return FunctionCell(profile, row) +
          fmt::format("<td class=\"n\" data-v=\"{}\">{}</td>", count, FormatCount(count)) +
-         TimeCell(CellOf(profile, row, "inclusive_s")) +
+         TimeCell(inclusive) +
          DoubtfulCell(exclusive, CellOf(profile, row, "exclusive_low_s"),
                       CellOf(profile, row, "exclusive_high_s")) +
-         ShareCell(CellNumber(exclusive), whole, largest) + "</tr>\n";
+         ShareCell(CellNumber(exclusive), CellNumber(inclusive), scale.whole, scale.largest);
 }
 
 /// "late-sender" -> "late sender"
@@ -113,26 +191,35 @@ std::string RankText(const Cell& cell, std::string_view noun, int host = -1) {
 
 }  // namespace
 
-std::string ProfileSection(const Table& profile) {
+std::string ProfileSection(const Table& profile, const std::vector<FunctionSpread>& spreads,
+                           const std::vector<TimelineRow>& ranks) {
   if (profile.rows.empty()) return {};
   const std::vector<const Row*> rows = SortedBy(profile, "exclusive_s");
-  double whole = 0;
-  for (const Row* row : rows) whole += CellNumber(CellOf(profile, *row, "exclusive_s"));
-  const double largest = CellNumber(CellOf(profile, *rows.front(), "exclusive_s"));
-  std::string text =
-      "<section class=\"profile\" aria-labelledby=\"h-profile\"><header class=\"panel\">"
-      "<h2 id=\"h-profile\">Functions</h2><span class=\"note\">summed over all ranks \u00b7 "
-      "exclusive: "
-      "without the functions called</span></header>\n<table class=\"sortable\"><thead><tr>"
-      "<th scope=\"col\" data-sort=\"text\">function</th><th scope=\"col\" "
-      "data-sort=\"text\">file</th><th scope=\"col\" class=\"n\" "
-      "data-sort=\"number\">calls</th>"
-      "<th scope=\"col\" class=\"n\" data-sort=\"number\">inclusive</th>"
-      "<th scope=\"col\" class=\"n\" data-sort=\"number\" aria-sort=\"descending\">exclusive</th>"
-      "<th scope=\"col\">share of exclusive time</th></tr></thead><tbody>\n";
-  for (std::size_t i = 0; i < std::min(rows.size(), kMostFunctions); ++i)
-    text += ProfileRow(profile, *rows[i], whole, largest);
-  text += "</tbody></table>\n";
+  ProfileScale scale;
+  for (const Row* row : rows) {
+    scale.whole += CellNumber(CellOf(profile, *row, "exclusive_s"));
+    scale.largest = std::max(scale.largest, CellNumber(CellOf(profile, *row, "inclusive_s")));
+  }
+  std::string text = fmt::format(
+      "<section class=\"panel profile\" id=\"profile\" aria-labelledby=\"h-profile\"><header "
+      "class=\"panel\"><h3 id=\"h-profile\">Functions</h3><span class=\"note\">whole run, summed "
+      "over all ranks \u00b7 exclusive: without the functions called</span></header>\n<div "
+      "class=\"scroll\"><table class=\"sortable\"><caption class=\"unseen\">Time by "
+      "function</caption><thead><tr><th scope=\"col\" data-sort=\"text\">function</th><th "
+      "scope=\"col\" data-sort=\"text\">file</th>{}{}{}<th scope=\"col\">inclusive, "
+      "exclusive</th>",
+      NumberHead("calls"), NumberHead("inclusive"), NumberHead("exclusive", true));
+  if (ranks.size() > 1)
+    text += NumberHead("least") + NumberHead("mean") + NumberHead("most of a rank") +
+            NumberHead("most / mean") + "<th scope=\"col\">by rank</th>";
+  text += "</tr></thead><tbody>\n";
+  for (std::size_t i = 0; i < std::min(rows.size(), kMostFunctions); ++i) {
+    const std::string region = CellText(CellOf(profile, *rows[i], "region"));
+    const auto spread = std::ranges::find(spreads, region, &FunctionSpread::region);
+    text += "<tr>" + ProfileRow(profile, *rows[i], scale) +
+            SpreadCells(spread == spreads.end() ? nullptr : &*spread, ranks) + "</tr>\n";
+  }
+  text += "</tbody></table></div>\n";
   if (rows.size() > kMostFunctions) {
     double rest = 0;
     for (std::size_t i = kMostFunctions; i < rows.size(); ++i)
@@ -145,15 +232,45 @@ std::string ProfileSection(const Table& profile) {
   return text + "</section>\n";
 }
 
+std::string SingleWaitsSection(const std::vector<SingleWait>& waits, const Timeline& timeline,
+                               std::string_view noun, int host) {
+  if (waits.empty()) return {};
+  std::string text =
+      "<section class=\"panel half\" id=\"single-waits\" "
+      "aria-labelledby=\"h-single-waits\"><header "
+      "class=\"panel\"><h3 id=\"h-single-waits\">Longest single waits</h3><span "
+      "class=\"note\">the time leads to the timeline</span></header>\n<div "
+      "class=\"scroll\"><table class=\"sortable\"><caption class=\"unseen\">The calls that waited "
+      "longest</caption><thead><tr><th scope=\"col\" data-sort=\"text\">kind</th><th scope=\"col\" "
+      "data-sort=\"text\">waiter</th><th scope=\"col\" data-sort=\"text\">last to come</th><th "
+      "scope=\"col\" data-sort=\"text\">in</th>" +
+      NumberHead("from") + NumberHead("time", true) + "</tr></thead><tbody>\n";
+  const double least = (timeline.end_s - timeline.begin_s) / 500;
+  for (const SingleWait& w : waits) {
+    const double length = std::max(w.end_s - w.begin_s, least);
+    text += fmt::format(
+        "<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td><td>{}</td><td class=\"n\" "
+        "data-v=\"{:.9g}\"><a href=\"#timeline\" data-from=\"{:.9g}\" "
+        "data-to=\"{:.9g}\">{}</a></td>{}</tr>\n",
+        Words(std::string(w.kind)), RankText(std::int64_t{w.waiter}, noun, host),
+        RankText(std::int64_t{w.partner}, noun, host),
+        EscapeMarkup(ShortenMiddle(ShortName(w.call), 40)), w.begin_s, w.begin_s - length / 2,
+        w.end_s + length / 2, FormatSeconds(w.begin_s), TimeCell(w.end_s - w.begin_s));
+  }
+  return text + "</tbody></table></div></section>\n";
+}
+
 std::string WaitsSection(const Table& waits, int culprit, std::string_view noun, int host) {
   if (waits.rows.empty()) return {};
   std::string text =
-      "<section class=\"waits\" aria-labelledby=\"h-waits\"><header class=\"panel\"><h2 "
-      "id=\"h-waits\">Longest "
-      "waits</h2>"
+      "<section class=\"panel waits half\" id=\"waits\" aria-labelledby=\"h-waits\"><header "
+      "class=\"panel\"><h3 "
+      "id=\"h-waits\">Who waited for "
+      "whom</h3>"
       "<span class=\"note\">culprit: where the chain of delays began, and what it was "
       "doing</span></header>\n"
-      "<table class=\"sortable\"><thead><tr><th scope=\"col\" "
+      "<div class=\"scroll\"><table class=\"sortable\"><caption class=\"unseen\">Who waited for "
+      "whom</caption><thead><tr><th scope=\"col\" "
       "data-sort=\"text\">kind</th><th scope=\"col\" data-sort=\"text\">waiter</th>"
       "<th scope=\"col\" data-sort=\"text\">culprit</th>"
       "<th scope=\"col\" data-sort=\"text\">culprit was in</th>"
@@ -173,7 +290,7 @@ std::string WaitsSection(const Table& waits, int culprit, std::string_view noun,
         EscapeMarkup(ShortenMiddle(ShortName(region), 48)),
         TimeCell(CellOf(waits, row, "seconds")));
   }
-  text += "</tbody></table>\n";
+  text += "</tbody></table></div>\n";
   if (rows.size() > kMostWaits)
     text += fmt::format(
         "<p class=\"more\">and {} more: <code>stipple stats ARCHIVE --table waits</code></p>\n",
@@ -186,7 +303,8 @@ std::string StatesDetails(const Table& states, std::string_view noun, int host) 
   constexpr std::pair<std::string_view, std::string_view> kColumns[] = {
       {"user_s", "user"}, {"system_s", "system"}, {"message_s", "message"}, {"idle_s", "idle"}};
   std::string text = fmt::format(
-      "<details><summary>States as numbers</summary><div class=\"scroll\"><table><thead><tr><th "
+      "<details><summary>States as numbers</summary><div class=\"scroll\"><table "
+      "id=\"states-table\"><thead><tr><th "
       "scope=\"col\">{}</th>",
       noun);
   for (const auto& [name, title] : kColumns)
@@ -204,7 +322,8 @@ std::string MatrixDetails(const Table& matrix, bool bytes) {
   if (matrix.rows.empty() || matrix.rows.size() > kMostNumbers || matrix.columns.size() < 2)
     return {};
   std::string text = fmt::format(
-      "<details><summary>{} as numbers</summary><div class=\"scroll\"><table><thead><tr>"
+      "<details><summary>{0} as numbers</summary><div class=\"scroll\"><table><caption "
+      "class=\"unseen\">{0}</caption><thead><tr>"
       "<th scope=\"col\">sender \\ receiver</th>",
       bytes ? "Volume" : "Messages");
   for (std::size_t i = 1; i < matrix.columns.size(); ++i)

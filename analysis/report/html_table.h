@@ -5,15 +5,23 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "analysis/report/report_input.h"
 #include "analysis/stats/table.h"
 
 namespace stipple {
 
-/// Functions by exclusive time: the first 30, and how many more there are. Empty without rows.
-std::string ProfileSection(const Table& profile);
+/// Functions by exclusive time: the first 30, and how many more there are; how unevenly the ranks
+/// spent it. Empty without rows.
+std::string ProfileSection(const Table& profile, const std::vector<FunctionSpread>& spreads,
+                           const std::vector<TimelineRow>& ranks);
 
-/// The ten longest waits; `culprit` is the world rank in the headline.
+/// Single calls, each with a link to its moment.
+std::string SingleWaitsSection(const std::vector<SingleWait>& waits, const Timeline& timeline,
+                               std::string_view noun, int host);
+
+/// Ten sums of waits; `culprit` is the world rank in the headline.
 std::string WaitsSection(const Table& waits, int culprit, std::string_view noun, int host);
 
 /// States per rank as numbers, folded; empty for very many ranks.

@@ -3,16 +3,22 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
+#include <utility>
 
 #include "analysis/report/left_out.h"
+#include "analysis/report/series.h"
 #include "analysis/report/text.h"
 #include "analysis/stats/finding_of.h"
+#include "analysis/stats/message_load.h"
 #include "analysis/stats/message_matrix.h"
 #include "analysis/stats/number.h"
 #include "analysis/stats/overhead.h"
 #include "analysis/stats/profile.h"
 #include "analysis/stats/states.h"
+#include "analysis/stats/switches.h"
+#include "analysis/stats/tables.h"
 #include "analysis/stats/timeline_of.h"
 #include "analysis/trace/ranks.h"
 #include "analysis/trace/trace.h"
@@ -22,6 +28,8 @@ namespace {
 
 constexpr std::size_t kDetailParts = 12;
 constexpr int kMostNarrowings = 8;
+constexpr std::size_t kMostWaits = 10;
+constexpr std::size_t kMostSpreads = 40;
 
 std::string RanksText(const Trace& trace) {
   const auto count = static_cast<std::uint64_t>(trace.RankCount());
@@ -91,6 +99,44 @@ RunAccuracy AccuracyOf(const Analysis& analysis) {
   return accuracy;
 }
 
+/// Matrices of very many ranks are no more than the page can draw.
+constexpr int kMostMatrixRanks = 4096;
+
+void AddCommunication(const Analysis& analysis, const std::vector<Blame>& blames,
+                      ReportInput& input) {
+  const Selection all;
+  input.message_series = MessageSeriesOf(analysis);
+  input.wait_series = WaitSeriesOf(analysis, input.finding);
+  if (analysis.trace.RankCount() > kMostMatrixRanks) return;
+  input.messages = MessagesTable(analysis, all);
+  input.volume = VolumeTable(analysis, all);
+  input.mean_size = MeanSizeTable(analysis, all);
+  input.wait_matrix = WaitMatrixOf(analysis.trace, blames);
+  input.sizes = SizesTable(analysis, all, {});
+  input.types = TypesTable(analysis, all, {});
+}
+
+/// A statistic by its name in the list of tables.
+std::string AddTable(const Analysis& analysis, std::string_view name, Table& table) {
+  const auto entry = std::ranges::find(TableEntries(), name, &TableEntry::name);
+  if (entry == TableEntries().end()) return {};
+  TableAnswer answer = entry->make(analysis, {}, {});
+  table = std::move(answer.table);
+  return std::move(answer.headline);
+}
+
+/// Paths of a run of more events are left to `stipple stats`: they need a scan of their own.
+constexpr std::uint64_t kMostEventsForPaths = 200'000'000;
+
+void AddTime(const Analysis& analysis, ReportInput& input) {
+  if (analysis.trace.EventCount() <= kMostEventsForPaths)
+    AddTable(analysis, "callpaths", input.callpaths);
+  if (analysis.trace.RankCount() < 2) return;
+  input.efficiency_text = AddTable(analysis, "efficiency", input.efficiency);
+  input.phases_text = AddTable(analysis, "phases", input.phases);
+  input.critical_path_text = AddTable(analysis, "critical-path", input.critical_path);
+}
+
 }  // namespace
 
 ReportInput ReportInputOf(const Analysis& analysis, std::size_t columns) {
@@ -101,13 +147,17 @@ ReportInput ReportInputOf(const Analysis& analysis, std::size_t columns) {
   input.title = trace.Program();
   input.finding = FindingOf(analysis, all, blames);
   input.facts = FactsOf(analysis);
-  input.timeline = TimelineOf(analysis, 0, static_cast<double>(trace.SpanNs()) * 1e-9, columns);
+  input.timeline = TimelineOf(analysis, 0, static_cast<double>(trace.SpanNs()) * 1e-9,
+                              ColumnsFor(trace.RanksInOrder().size()));
   input.detail = DetailOf(analysis, input.timeline, columns);
   input.states = StatesTable(StatesOf(analysis, all));
-  input.messages = MessagesTable(analysis, all);
-  input.volume = VolumeTable(analysis, all);
   input.profile = ProfileTable(analysis, all, false);
   input.waits = WaitsTable(trace, blames);
+  input.longest_waits = LongestWaits(analysis, kMostWaits);
+  input.spreads = SpreadsOf(analysis, kMostSpreads);
+  AddCommunication(analysis, blames, input);
+  input.switches = SwitchesOverTimeTable(trace, all, {});
+  AddTime(analysis, input);
   input.accuracy = AccuracyOf(analysis);
   for (std::string& text : LeftOutTexts(trace)) input.health.push_back(std::move(text));
   for (const Problem& p : analysis.health.problems())

@@ -40,6 +40,40 @@ struct RunAccuracy {
   std::vector<Step> steps;
 };
 
+/// Messages over time, for any part of the run.
+struct MessageSeries {
+  struct Dot {
+    double time_s = 0;                               // the send was entered
+    std::uint32_t sender_row = 0, receiver_row = 0;  // of the timeline
+    std::uint64_t bytes = 0;
+  };
+  std::uint64_t count = 0;
+  std::vector<Dot> all;                      // by time; empty: too many
+  std::vector<std::uint64_t> counts, bytes;  // sent, by equal columns of the run
+};
+
+/// Time that others waited for one rank, by equal columns of the run.
+struct WaitSeries {
+  int rank = 0;
+  std::string name;
+  std::string region;
+  std::vector<double> seconds;
+};
+
+/// One call that waited.
+struct SingleWait {
+  std::string_view kind;
+  int waiter = 0, partner = -1;  // world ranks; the partner is the last that arrived
+  double begin_s = 0, end_s = 0;
+  std::string call;  // of MPI
+};
+
+/// A function's exclusive time on each rank.
+struct FunctionSpread {
+  std::string region;
+  std::vector<double> seconds;  // by row of the timeline
+};
+
 struct ReportInput {
   std::string title;  // the traced program
   Finding finding;
@@ -49,14 +83,28 @@ struct ReportInput {
   Table states;
   Table messages;
   Table volume;
-  Table profile;  // most exclusive time first
-  Table waits;    // longest first
+  Table profile;                          // most exclusive time first
+  Table waits;                            // longest first
+  std::vector<SingleWait> longest_waits;  // longest first
+  std::vector<FunctionSpread> spreads;    // of the functions with most exclusive time
+  Table sizes;                            // messages by size
+  Table types;                            // messages by tag
+  Table mean_size;                        // matrix of bytes per message
+  Table wait_matrix;                      // matrix of seconds that the row waited for the column
+  Table switches;                         // over time by rank; no rows: none were recorded
+  Table callpaths;                        // a tree
+  Table efficiency;                       // one object of fractions
+  Table phases;
+  Table critical_path;
+  std::string efficiency_text, phases_text, critical_path_text;  // a sentence about each
+  MessageSeries message_series;
+  std::vector<WaitSeries> wait_series;  // most first
   RunAccuracy accuracy;
   std::vector<std::string> health;  // one line per problem; empty: the archive is sound
   bool mono = false;                // patterns instead of colours
 };
 
-/// Computes all of the above. `columns`: of each timeline.
+/// Computes all of the above. `columns`: of the detail's timeline.
 ReportInput ReportInputOf(const Analysis& analysis, std::size_t columns);
 
 }  // namespace stipple

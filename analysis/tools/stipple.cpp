@@ -11,6 +11,9 @@
 #include "analysis/trace/input_error.h"
 
 namespace stipple {
+
+int RunCompare(const Arguments& arguments);
+
 namespace {
 
 constexpr Command kCommands[] = {
@@ -25,6 +28,7 @@ constexpr Command kCommands[] = {
     {"view", RunView, "an interactive window on a run"},
     {"watch", RunWatch, "a run that is still going, page after page"},
     {"compact", RunCompact, "make an archive smaller"},
+    {"compare", RunCompare, "two runs on one scale: what changed"},
     {"exemplar", RunExemplar, "the ray tracer's experiments: charts on a page"},
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Sender by receiver: one hue on a square-root scale, the number in the cell where it fits, nothing
 // where nothing was sent. Beyond kMostCells ranks, neighbours share a cell; the host never does.
+#include "analysis/views/matrix_view.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -316,6 +318,21 @@ Scene VolumeMatrixView(const ViewInput& input) {
                       .title = "Volume",
                       .description = "Bytes sent; senders are rows, receivers columns."},
                      input.volume, {Quantity::kBytes, {}});
+}
+
+Scene MatrixPanelView(const Table& table, const MatrixWords& words) {
+  Scene scene = MatrixScene(
+      {.name = "matrix",
+       .width = kMatrixWidth,
+       .title = words.title,
+       .description = words.title + "; rows: " + words.rows + ", columns: " + words.columns + "."},
+      &table, KindOf(table));
+  for (Layer& layer : scene.layers) {
+    if (layer.name != "words" || layer.shapes.size() != 2) continue;
+    std::get<TextShape>(layer.shapes[0]).text = "\u2190 " + words.rows;
+    std::get<TextShape>(layer.shapes[1]).text = words.columns + " \u2192";
+  }
+  return scene;
 }
 
 Scene MatrixView(const ViewInput& input) {

@@ -1,74 +1,87 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# usage: page_in_browser.sh SAMPLE_REPORTS
-# Reports opened in a browser: nothing on its console, tables sort, values appear under the pointer. Exit 77: no browser
-# that works here.
-set -eu
+# usage: page_in_browser.sh SAMPLE_REPORTS STIPPLE DATA
+# Reports opened in a browser: nothing on its console; tables, pages, zoom and keys work (page_driver.js), light and dark; a part
+# of the run says what `stipple stats` says of it; without scripts and on paper everything is there. Exit 77: no browser that
+# works here.
+set -u
+samples=$1 stipple=$2 archives=$3 here=$(cd "$(dirname "$0")" && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 export HOME=$work
 chromium=$(command -v chromium || command -v chromium-browser || command -v google-chrome) ||
   { echo "needs chromium"; exit 77; }
-# As it stands after its scripts have run; what they say, and no more, is a line with CONSOLE.
-opened() {
-  "$chromium" --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --user-data-dir="$work/profile" \
-    --enable-logging=stderr --dump-dom "$1" 2>"$work/err"
+# browser ARGUMENTS...: what it says goes to $work/err.
+browser() {
+  timeout 120 "$chromium" --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --user-data-dir="$work/profile" \
+    --enable-logging=stderr --window-size=1400,1000 "$@" 2>"$work/err"
 }
-opened about:blank | grep -q '<html' || { echo "$chromium does not work here"; exit 77; }
-
-cat >"$work/driver.js" <<'END'
-(function () {
-  var problems = [], tables = document.querySelectorAll("table.sortable"), sorted = 0;
-  function values(table, column) {
-    return Array.from(table.tBodies[0].rows, function (row) {
-      var cell = row.cells[column];
-      return "v" in cell.dataset ? cell.dataset.v : cell.textContent;
-    }).filter(function (value) { return value !== ""; });
-  }
-  function inOrder(list, text, sign) {
-    return list.every(function (value, i) {
-      if (i === 0) return true;
-      return sign * (text ? list[i - 1].localeCompare(value, "en", {numeric: true}) : list[i - 1] - value) <= 0;
-    });
-  }
-  tables.forEach(function (table) {
-    table.querySelectorAll("thead th button").forEach(function (button) {
-      var head = button.parentNode, text = head.dataset.sort === "text";
-      for (var click = 0; click < 2; ++click) {
-        button.click();
-        var sign = head.getAttribute("aria-sort") === "descending" ? -1 : 1;
-        if (sign !== ((click === 0) === text ? 1 : -1)) problems.push("wrong way: " + button.textContent);
-        if (!inOrder(values(table, head.cellIndex), text, sign)) problems.push("not sorted: " + button.textContent);
-        ++sorted;
-      }
-    });
-  });
-  if (tables.length > 0 && sorted === 0) problems.push("no table sorts");
-  var source = document.getElementById("hover"), svg = document.querySelector("svg.view-timeline");
-  var data = source && svg ? JSON.parse(source.textContent) : {};
-  (data.rows || []).forEach(function (row) {
-    var area = svg.getBoundingClientRect(), scale = area.width / svg.viewBox.baseVal.width;
-    svg.dispatchEvent(new PointerEvent("pointermove", {
-      clientX: area.left + scale * (data.left + data.right) / 2, clientY: area.top + scale * (row[1] + row[2] / 2)}));
-    var tip = document.getElementById("tip"), shares = 0;
-    tip.innerHTML.replace(/(\d+)%/g, function (all, share) { shares += Number(share); });
-    if (tip.hidden || !tip.textContent.startsWith(row[0])) problems.push("no values for " + row[0]);
-    if (Math.abs(shares - 100) > 3) problems.push("shares of " + row[0] + " make " + shares + "%");
-  });
-  document.body.dataset.problems = problems.join("; ") || "none";
-})();
-END
-
-"$1" "$work" >"$work/samples"
+browser --dump-dom about:blank | grep -q '<html' || { echo "$chromium does not work here"; exit 77; }
 bad=0
-for page in "$work"/*.html; do
-  name=$(basename "$page" .html)
-  { cat "$page"; echo "<script>"; cat "$work/driver.js"; echo "</script>"; } >"$work/driven.html"
-  opened "file://$work/driven.html" >"$work/dom"
-  if grep CONSOLE "$work/err"; then echo "$name: a message on the console"; bad=1; fi
+fail() { echo "FAIL: $*"; bad=1; }
+
+# driven PAGE NAME [FLAG...]: the page as it stands after its own script and the driver.
+driven() {
+  local page=$1 name=$2
+  shift 2
+  { cat "$page"; echo "<script>"; cat "$here/page_driver.js"; echo "</script>"; } >"$work/driven.html"
+  browser "$@" --dump-dom "file://$work/driven.html" >"$work/dom"
+  if grep CONSOLE "$work/err"; then fail "$name: a message on the console"; fi
   grep -q 'data-problems="none"' "$work/dom" ||
-    { echo "$name: $(grep -o 'data-problems="[^"]*"' "$work/dom" || echo "the script did not end")"; bad=1; }
-  rm "$page" "$work/driven.html"
+    fail "$name: $(grep -o 'data-problems="[^"]*"' "$work/dom" || echo "the script did not end")"
+}
+
+# on_paper PAGE NAME [FLAG...]: every page's heading and every panel's stand in the PDF.
+on_paper() {
+  local page=$1 name=$2 heading
+  shift 2
+  command -v pdftotext >/dev/null || return 0
+  browser "$@" --no-pdf-header-footer --print-to-pdf="$work/page.pdf" "file://$page" >/dev/null
+  pdftotext -layout "$work/page.pdf" - 2>/dev/null | tr -s ' \n' ' ' >"$work/text"
+  grep -oE '<h[123][^>]*>[^<]*' "$page" | sed 's/.*>//; s/&amp;/\&/g; s/&lt;/</g; s/&gt;/>/g' | while read -r heading; do
+    grep -qF -e "$heading" "$work/text" || echo "$heading"
+  done >"$work/missing"
+  [ -s "$work/missing" ] && fail "$name: not on paper: $(tr '\n' ';' <"$work/missing")"
+  return 0
+}
+
+mkdir "$work/pages"
+"$samples" "$work/pages" >"$work/samples" || fail "sample_reports: $?"
+for page in "$work"/pages/*.html; do driven "$page" "$(basename "$page" .html)"; done
+driven "$work/pages/nine.html" "nine in the dark" --force-dark-mode --blink-settings=preferredColorScheme=0
+on_paper "$work/pages/nine.html" nine
+on_paper "$work/pages/thousand.html" thousand
+on_paper "$work/pages/nine.html" "nine without scripts" --blink-settings=scriptEnabled=false
+
+# A run that was recorded: the second and third quarter of it as the page shows it and as the table says it.
+"$stipple" report "$archives/format-1.stipple" -o "$work/run.html" >/dev/null || fail "stipple report: $?"
+"$stipple" compare "$archives/format-1.stipple" "$archives/format-1-compacted.stipple" -o "$work/both.html" >/dev/null ||
+  fail "stipple compare: $?"
+driven "$work/both.html" compare
+driven "$work/run.html" run
+span=$("$stipple" info --json "$archives/format-1.stipple" | grep -oE '"span_s": ?[0-9.e-]+' | grep -oE '[0-9.e-]+$')
+"$stipple" stats "$archives/format-1.stipple" --table states --format csv --from "$(awk "BEGIN{printf \"%.9f\", $span/4}")" \
+  --to "$(awk "BEGIN{printf \"%.9f\", $span*3/4}")" 2>/dev/null | tail -n +2 | cut -d, -f2- >"$work/table"
+grep -oE 'data-states="[^"]*"' "$work/dom" | grep -oE '\[[^][]*\]' | tr -d '[]' >"$work/page"
+[ -s "$work/page" ] || fail "the page has no states of a part"
+paste -d, "$work/table" "$work/page" | awk -F, -v span="$span" '
+  { n = NF / 2; for (i = 1; i <= n; ++i) { if ($i == "") continue; d = $i - $(i + n); if (d < 0) d = -d
+      if (d > span / 2000) { print "state " i " of row " NR ": " $i " in the table, " $(i + n) " on the page"; bad = 1 } } }
+  END { exit bad }' || fail "the range does not show what the table says"
+
+# Archives that lack something, or nearly all, give a page all the same, which says so.
+mkdir "$work/empty.stipple"
+for kind in damaged cut zero; do cp -r "$archives/format-1.stipple" "$work/$kind.stipple"; done
+for stream in "$work"/damaged.stipple/*.stream; do
+  printf 'XXXXXXXXXXXXXXXXXXXXXXXXXXXXXXXXXXXXXXXX' | dd of="$stream" bs=1 seek=20000 conv=notrunc status=none
+done
+for stream in "$work"/cut.stipple/*.stream; do truncate -s 30000 "$stream"; done
+for stream in "$work"/zero.stipple/*.stream; do truncate -s 0 "$stream"; done
+for kind in empty damaged cut zero; do
+  "$stipple" report "$work/$kind.stipple" -o "$work/$kind.html" >"$work/out" 2>&1
+  status=$?
+  [ $status = 0 ] || { [ $status = 2 ] && ! [ -e "$work/$kind.html" ] && grep -q . "$work/out"; } || fail "$kind: exit $status: $(cat "$work/out")"
+  if [ -e "$work/$kind.html" ]; then driven "$work/$kind.html" "$kind"; fi
 done
 [ $bad = 0 ] && echo "pages work in $("$chromium" --version)"
 exit $bad

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "analysis/views/table_access.h"
+
 namespace stipple {
 namespace {
 
@@ -211,6 +213,62 @@ Table WaitsOf(int nodes) {
   return table;
 }
 
+/// Messages as the matrix says, spread evenly over the run.
+MessageSeries MessagesOf(const ReportInput& report, bool all) {
+  MessageSeries series;
+  series.counts.resize(1024);
+  series.bytes.resize(1024);
+  Random random(11);
+  for (std::size_t i = 0; i < report.messages.rows.size(); ++i)
+    for (std::size_t k = 1; k < report.messages.rows[i].size(); ++k) {
+      const std::int64_t count = std::get<std::int64_t>(report.messages.rows[i][k]);
+      series.count += static_cast<std::uint64_t>(count);
+      for (std::int64_t n = 0; n < std::min<std::int64_t>(count, 40); ++n) {
+        const double time = Uniform(random, 0, kSpan);
+        const auto column = static_cast<std::size_t>(time / kSpan * 1024);
+        ++series.counts[column];
+        series.bytes[column] += 970;
+        if (all)
+          series.all.push_back(
+              {time, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(k - 1), 970});
+      }
+    }
+  std::ranges::stable_sort(series.all, {}, &MessageSeries::Dot::time_s);
+  return series;
+}
+
+std::vector<WaitSeries> WaitSeriesOf(const Finding& finding) {
+  std::vector<WaitSeries> series;
+  for (const WaitedFor& w : finding.waited_for) {
+    series.push_back({w.rank, w.name, w.region, std::vector<double>(256)});
+    for (std::size_t i = 128; i < 256; ++i) series.back().seconds[i] = w.seconds / 128;
+  }
+  return series;
+}
+
+std::vector<FunctionSpread> SpreadsOf(const Table& profile, std::size_t ranks) {
+  std::vector<FunctionSpread> spreads;
+  Random random(17);
+  for (std::size_t i = 0; i < std::min<std::size_t>(profile.rows.size(), 30); ++i) {
+    const double mean = CellNumber(profile.rows[i][5]) / static_cast<double>(ranks);
+    FunctionSpread spread{CellText(profile.rows[i][0]), {}};
+    for (std::size_t k = 0; k < ranks; ++k)
+      spread.seconds.push_back(mean * Uniform(random, 0.7, 1.3));
+    spreads.push_back(std::move(spread));
+  }
+  return spreads;
+}
+
+/// What follows from the rest.
+void AddSeries(ReportInput& report, bool all_messages) {
+  report.message_series = MessagesOf(report, all_messages);
+  report.wait_series = WaitSeriesOf(report.finding);
+  report.spreads = SpreadsOf(report.profile, report.timeline.rows.size());
+  for (int i = 0; i < 10; ++i)
+    report.longest_waits.push_back({"late-sender", 1 + i % 2, 0, kTurn + 0.7 * i,
+                                    kTurn + 0.7 * i + 0.4 / (i + 1), "MPI_Recv"});
+}
+
 Finding FindingOf(int nodes, bool host) {
   Finding finding;
   finding.sentence = fmt::format("{0}s 1\u2013{1} spend 37% of the run waiting for {2} 0",
@@ -235,6 +293,22 @@ ReportInput ThirtyTwo() { return SampleReport(32, true); }
 ReportInput HundredTwentyEight() { return SampleReport(128, true); }
 ReportInput Thousand() { return SampleReport(1024, false); }
 ReportInput Noise() { return SampleNoise(1024); }
+/// The same run, but ten hours long.
+ReportInput TenHours() {
+  ReportInput report = SampleReport(8, true);
+  constexpr double kTimes = 36'000 / kSpan;
+  for (Timeline* timeline : {&report.timeline, &report.detail}) {
+    timeline->begin_s *= kTimes;
+    timeline->end_s *= kTimes;
+    for (TimelineMark& mark : timeline->marks) mark.time_s *= kTimes;
+    for (TimelineMessage& message : timeline->messages) {
+      message.send_s *= kTimes;
+      message.receive_s *= kTimes;
+    }
+  }
+  for (MessageSeries::Dot& dot : report.message_series.all) dot.time_s *= kTimes;
+  return report;
+}
 ReportInput Mono() {
   ReportInput report = SampleReport(8, true);
   report.mono = true;
@@ -270,6 +344,7 @@ ReportInput SampleReport(int nodes, bool host) {
   report.waits = WaitsOf(nodes);
   report.facts = {fmt::format("{} {}{}", nodes, host ? "nodes" : "ranks", host ? " + host" : ""),
                   "18.4 s", "1,063 messages", "1.02 MB", "12.4 million events"};
+  AddSeries(report, nodes <= 32);
   if (nodes == 3) report.health = {"1,204 events of rank 2 lost", "3 messages without a receive"};
   return report;
 }
@@ -314,6 +389,8 @@ ReportInput SampleNoise(int ranks) {
   report.profile = ProfileOf(5000);
   for (std::vector<Cell>& row : report.profile.rows)
     row[0] = std::string(5000, '<') + std::get<std::string>(row[0]);
+  report.longest_waits.clear();
+  AddSeries(report, false);
   return report;
 }
 
@@ -325,6 +402,35 @@ ReportInput SampleEmpty() {
   return report;
 }
 
+CompareInput SampleCompare(int nodes_a, int nodes_b) {
+  CompareInput input;
+  for (ComparedRun* run : {&input.a, &input.b}) {
+    const bool first = run == &input.a;
+    const int nodes = first ? nodes_a : nodes_b;
+    ReportInput report = SampleReport(nodes, nodes > 1);
+    run->name = first ? "before" : "after";
+    run->program = report.title;
+    run->span_s = first ? kSpan : kSpan * 0.8;
+    run->timeline = std::move(report.timeline);
+    run->messages = std::move(report.messages);
+    run->volume = std::move(report.volume);
+    run->state_s = {9.1, 0.4, first ? 1.2 : 1.5, first ? 7.7 : 3.7};
+    run->has_system = true;
+    run->waited_s = {{"node 0", first ? 5.9 : 1.8}, {"the host", 1.1}};
+    run->facts = std::move(report.facts);
+  }
+  input.headline = CompareHeadline(input.a, input.b);
+  if (nodes_a != nodes_b) input.notes = {"Different numbers of ranks."};
+  input.functions = {"functions",
+                     TableShape::kRows,
+                     {{"region"}, {"a_s"}, {"b_s"}, {"change_s"}, {"a_calls"}, {"b_calls"}},
+                     {}};
+  for (int i = 0; i < 60; ++i)
+    input.functions.rows.push_back({fmt::format("Helper{}(int)", i), 4.0 / (i + 1), 3.0 / (i + 1),
+                                    -1.0 / (i + 1), std::int64_t{4}, std::int64_t{i}});
+  return input;
+}
+
 std::span<const SampleEntry> Samples() {
   static constexpr SampleEntry kSamples[] = {{"serial", SampleSerial},
                                              {"three", Three},
@@ -333,6 +439,7 @@ std::span<const SampleEntry> Samples() {
                                              {"hundred", HundredTwentyEight},
                                              {"thousand", Thousand},
                                              {"noise", Noise},
+                                             {"ten-hours", TenHours},
                                              {"mono", Mono},
                                              {"empty", SampleEmpty}};
   return kSamples;

@@ -7,6 +7,7 @@
 #include <span>
 #include <string_view>
 
+#include "analysis/report/compare_input.h"
 #include "analysis/report/report_input.h"
 #include "analysis/views/view_list.h"
 
@@ -23,6 +24,9 @@ ReportInput SampleNoise(int ranks);
 
 /// A run of one event and no length.
 ReportInput SampleEmpty();
+
+/// Two such reports, the second a fifth shorter.
+CompareInput SampleCompare(int nodes_a, int nodes_b);
 
 struct SampleEntry {
   std::string_view name;

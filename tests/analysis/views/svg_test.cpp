@@ -5,13 +5,20 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <random>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "analysis/report/html.h"
+#include "analysis/report/html_compare.h"
 #include "analysis/report/html_style.h"
+#include "analysis/report/page_data.h"
 #include "analysis/views/palette.h"
 #include "sample_inputs.h"
 
@@ -90,7 +97,7 @@ TEST(Report, StaysBelowAMegabyteForAnyTrace) {
 TEST(Report, FirstLineIsTheFinding) {
   const ReportInput report = SampleReport(8, true);
   const std::string page = ReportPage(report);
-  EXPECT_TRUE(Contains(page, "<body>\n<header><h1>" + report.finding.sentence + "</h1>"));
+  EXPECT_TRUE(Contains(page, "<header><h1>" + report.finding.sentence + "</h1>"));
 }
 
 TEST(Report, RefersToNothingOutsideItself) {
@@ -124,11 +131,69 @@ TEST(Report, HostileNamesCannotLeaveTheirPlace) {
   EXPECT_FALSE(Contains(ReportPage(report), "<script>alert"));
 }
 
-TEST(Report, RowNamesInTheHoverDataAreJson) {
+TEST(Report, NamesInThePagesDataAreJson) {
   ReportInput report = SampleReport(3, true);
   report.timeline.rows.back().name = "a\\b\"c</script>";
-  const std::string data = HoverData(ViewsOfSample(report));
-  EXPECT_TRUE(Contains(data, R"(["a\\b\"c\u003c/script>",)")) << data.substr(0, 200);
+  const std::string data = PageData(report, ViewsOfSample(report), 400'000);
+  EXPECT_TRUE(Contains(data, R"("name":"a\\b\"c\u003c/script>")")) << data.substr(0, 200);
+}
+
+/// What the page's script makes of packed bytes.
+std::vector<int> Unpacked(const std::string& packed) {
+  std::vector<int> bytes;
+  for (std::size_t i = 0; i < packed.size();) {
+    const int n = static_cast<unsigned char>(packed[i++]);
+    if (n < 128)
+      for (int k = 0; k <= n; ++k) bytes.push_back(static_cast<unsigned char>(packed[i++]));
+    else
+      bytes.insert(bytes.end(), static_cast<std::size_t>(258 - n),
+                   static_cast<unsigned char>(packed[i++]));
+  }
+  return bytes;
+}
+
+TEST(Report, SharesOfAnyPartAreRightToTwoUnitsOfAColumn) {
+  std::mt19937 random(7);
+  for (const int kind : {0, 1, 2, 3}) {
+    std::vector<double> shares;
+    for (int i = 0; i < 3000; ++i) {
+      const double any = static_cast<double>(random() % 1000) / 999;
+      shares.push_back(kind == 0 ? any : kind == 1 ? 0.0013 : kind == 2 ? i / 500 % 2 : any * 0.01);
+    }
+    const std::string bytes = ByteShares(shares);
+    const std::vector<int> told =
+        Unpacked(PackBits({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}));
+    ASSERT_EQ(told.size(), shares.size());
+    double error = 0, most = 0;
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+      error += told[i] - shares[i] * 255;
+      most = std::max(most, std::abs(error));
+    }
+    EXPECT_LE(most, 2.01) << kind;
+  }
+}
+
+TEST(Report, PackedRunsAreShort) {
+  const std::vector<std::uint8_t> same(1300, 9);
+  EXPECT_EQ(PackBits(same).size(), 20U);
+  EXPECT_EQ(Base64(std::vector<std::uint8_t>{'a', 'b', 'c', 'd'}), "YWJjZA==");
+}
+
+TEST(Compare, HeadlineNamesWhatChangedMost) {
+  const CompareInput input = SampleCompare(8, 8);
+  EXPECT_EQ(input.headline,
+            "after is 1.25 times as fast as before: 4.10 s less waiting for node 0");
+  EXPECT_EQ(CompareHeadline(input.b, input.a),
+            "before takes 1.25 times as long as after: 4.10 s more waiting for node 0");
+  EXPECT_EQ(CompareHeadline(input.a, input.a), "before takes as long as before");
+}
+
+TEST(Compare, SameInputGivesTheSameBytesBelowAMegabyte) {
+  for (const auto [a, b] : {std::pair(1, 1), std::pair(4, 8), std::pair(1000, 1024)}) {
+    const std::string page = ComparePage(SampleCompare(a, b));
+    EXPECT_EQ(page, ComparePage(SampleCompare(a, b)));
+    EXPECT_LE(page.size(), 1'000'000U) << a;
+  }
 }
 
 TEST(Report, ScriptHasNoSyntaxError) {

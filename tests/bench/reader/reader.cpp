@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// bench_reader --write EVENTS PATH writes an archive and no more.
 // bench_reader [EVENTS] [DIRECTORY] [RECORDED]: writes an archive of one rank with EVENTS function
 // events (default 1e8, 800 MB), then measures CPU time per event of the profile and states tables
 // and of both together, in alternating runs, against the floor: summing the mapped words.
@@ -245,6 +246,11 @@ int Main(std::uint64_t events, const std::string& directory, const std::string& 
 }  // namespace stipple
 
 int main(int argc, char** argv) {
+  // --write EVENTS PATH: only the archive, for other benchmarks.
+  if (argc == 4 && std::strcmp(argv[1], "--write") == 0) {
+    stipple::WriteArchive(argv[3], static_cast<std::uint64_t>(std::atof(argv[2])));
+    return 0;
+  }
   const double events = argc > 1 ? std::atof(argv[1]) : 1e8;
   const std::string directory =
       argc > 2 ? argv[2] : std::filesystem::temp_directory_path().string();

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+#include "analysis/report/html_panel.h"
+
+#include <fmt/format.h>
+
+#include "analysis/views/svg.h"
+#include "analysis/views/svg_write.h"
+
+namespace stipple {
+
+std::string PanelAround(const Panel& panel, const std::string& content) {
+  std::string text = fmt::format(
+      "<section class=\"panel {0}\" id=\"{1}\" aria-labelledby=\"h-{1}\"><header "
+      "class=\"panel{2}\">"
+      "<h3 id=\"h-{1}\">{3}</h3>{4}",
+      panel.style, panel.id, panel.end_note ? " end" : "", EscapeMarkup(panel.heading),
+      panel.beside);
+  if (!panel.note.empty())
+    text += fmt::format("<span class=\"note\">{}</span>", EscapeMarkup(panel.note));
+  return text + "</header>\n" + content + panel.below + "</section>\n";
+}
+
+std::string PanelText(const Panel& panel, const Scene& scene) {
+  if (scene.layers.empty()) return {};
+  Panel named = panel;
+  if (named.id.empty()) named.id = scene.name;
+  if (named.note.empty()) named.note = scene.note;
+  return PanelAround(named, "<figure>" + DrawSvg(scene) + "</figure>");
+}
+
+std::string PanelWithout(const Panel& panel, std::string_view sentence) {
+  return PanelAround(panel, fmt::format("<p class=\"without\">{}</p>", EscapeMarkup(sentence)));
+}
+
+std::string PanelRow(const std::string& panels, std::string_view style) {
+  if (panels.empty()) return {};
+  return fmt::format("<div class=\"line {}\">{}</div>\n", style, panels);
+}
+
+}  // namespace stipple

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// stipple compare: two runs on one scale, what changed and by how much.
+#include <fmt/format.h>
+
+#include <array>
+
+#include "analysis/report/compare_input.h"
+#include "analysis/stats/analysis.h"
+#include "analysis/tools/command.h"
+#include "analysis/tools/progress.h"
+#include "analysis/tools/views_library.h"
+#include "analysis/trace/input_error.h"
+
+namespace stipple {
+namespace {
+
+constexpr std::size_t kColumns = 1024;
+
+using DrawFunction = decltype(&stipple_draw_compare);
+
+}  // namespace
+
+int RunCompare(const Arguments& arguments) {
+  CLI::App app("Two runs on one scale: what changed and by how much. Needs no display.", "compare");
+  std::string first;
+  std::string second;
+  std::string output;
+  bool mono = false;
+  SelectionOptions selected;
+  app.add_option("A", first, "the archive to compare with")->required();
+  app.add_option("B", second, "the archive that changed")->required();
+  app.add_option("-o", output, "the page to write (default: compare.html)")->type_name("F.html");
+  app.add_flag("--mono", mono, "patterns instead of colours");
+  selected.AddTo(app);
+  if (!Parse(app, arguments)) return 0;
+  if (output.empty()) output = "compare.html";
+  const auto draw =
+      reinterpret_cast<DrawFunction>(FunctionOfViews("stipple compare", "stipple_draw_compare"));
+  ProgressLine progress;
+  const Trace trace_a = Trace::Open(first, progress.meter());
+  const Trace trace_b = Trace::Open(second, progress.meter());
+  const Selection of_a = selected.For(trace_a);
+  const Selection of_b = selected.For(trace_b);
+  const Analysis a(trace_a);
+  const Analysis b(trace_b);
+  CompareInput input = CompareInputOf(a, b, of_a, of_b, kColumns);
+  input.mono = mono;
+  trace_b.BeginPhase("drawing the page", 0);
+  std::array<char, 1024> error{};
+  const int failed = draw(&input, output.c_str(), error.data(), error.size());
+  progress.Stop();
+  if (failed != 0) throw InputError(output, error.data());
+  std::string text = input.headline + "\n";
+  for (const std::string& note : input.notes) text += note + "\n";
+  WriteOut(text + output + "\n");
+  WarnOfProblems(trace_a, a.health);
+  WarnOfProblems(trace_b, b.health);
+  return 0;
+}
+
+}  // namespace stipple
