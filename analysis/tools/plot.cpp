@@ -15,6 +15,7 @@
 #include "analysis/stats/tables.h"
 #include "analysis/stats/timeline_of.h"
 #include "analysis/tools/command.h"
+#include "analysis/tools/options.h"
 #include "analysis/tools/progress.h"
 #include "analysis/tools/selection_options.h"
 #include "analysis/tools/views_library.h"
@@ -173,18 +174,17 @@ void CheckColumns(const std::vector<Table>& tables, std::string_view option,
   }
 }
 
-void AddOptions(CLI::App& app, PlotOptions& options) {
-  app.add_option("A", options.archive, "the archive")->required();
-  app.add_option("--view", options.view, "how; see below")->required()->type_name("NAME");
-  app.add_option("--table", options.tables, "what, with commas between")->type_name("NAME,...");
-  app.add_option("-o", options.output, "the picture, by its ending (default: VIEW.svg)")
-      ->type_name("F.svg|pdf|png");
-  app.add_flag("--mono", options.mono, "patterns instead of colours");
+void AddOptions(CommandOptions& app, PlotOptions& options) {
+  app.Add({"A", "", "the archive", true}, options.archive);
+  app.Add({"--view", "NAME", "how; see below", true}, options.view);
+  app.Add({"--table", "NAME,...", "what, with commas between"}, options.tables);
+  app.Add({"-o", "F.svg|pdf|png", "the picture, by its ending (default: VIEW.svg)"},
+          options.output);
+  app.Add({"--mono", "", "patterns instead of colours"}, options.mono);
   options.selected.AddTo(app, kTakesEverything);
-  app.add_option("--at", options.at_s, "the moment that dials, leds, status and kiviat show")
-      ->type_name("SECONDS");
-  app.add_option("--x", options.x, "column along the x axis (graph)")->type_name("COLUMN");
-  app.add_option("--y", options.y, "columns to show, with commas between")->type_name("COLUMN,...");
+  app.Add({"--at", "SECONDS", "the moment that dials, leds, status and kiviat show"}, options.at_s);
+  app.Add({"--x", "COLUMN", "column along the x axis (graph)"}, options.x);
+  app.Add({"--y", "COLUMN,...", "columns to show, with commas between"}, options.y);
 }
 
 void CheckOutput(const std::string& output) {
@@ -219,13 +219,13 @@ Plot Compute(const Analysis& analysis, const Selection& selection, const PlotOpt
 }  // namespace
 
 int RunPlot(const Arguments& arguments) {
-  CLI::App app("A display of one or more statistics as SVG, PDF or PNG; no display needed.",
-               "plot");
+  CommandOptions app("A display of one or more statistics as SVG, PDF or PNG; no display needed.",
+                     "plot");
   PlotOptions options;
   AddOptions(app, options);
   const Choices choices = ChoicesOfLibrary();
-  app.footer(Help(choices));
-  if (!Parse(app, arguments)) return 0;
+  app.Footer(Help(choices));
+  if (!app.Parse(arguments)) return 0;
   const PlotChoice& choice = Choose(choices, "--view", options.view);
   if (options.output.empty()) options.output = options.view + ".svg";
   CheckOutput(options.output);

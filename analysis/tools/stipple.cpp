@@ -12,7 +12,6 @@
 
 namespace stipple {
 
-int RunCompare(const Arguments& arguments);
 
 namespace {
 
