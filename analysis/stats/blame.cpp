@@ -232,9 +232,10 @@ Table WaitsTable(const Trace& trace, const std::vector<Blame>& blames) {
                                std::int64_t{b.culprit}, b.seconds,
                                b.region == 0 ? Cell() : Cell(trace.regions()[b.region].name)));
   // Nothing is lost while a host waits for requests.
-  std::ranges::stable_partition(table.rows, [&trace](const std::vector<Cell>& row) {
-    return !trace.IsHost(static_cast<int>(std::get<std::int64_t>(row[1])));
-  });
+  std::stable_partition(table.rows.begin(), table.rows.end(),
+                        [&trace](const std::vector<Cell>& row) {
+                          return !trace.IsHost(static_cast<int>(std::get<std::int64_t>(row[1])));
+                        });
   return table;
 }
 

@@ -4,13 +4,11 @@
 #include "ranks.h"
 
 REGION void Work(double ms) { Sleep(ms); }
-REGION void Prepare(double ms) { Sleep(ms); }
 
 int main(int argc, char** argv) {
   Begin(argc, argv);
   for (int step = 0; step < 6; ++step) {
     if (rank == 0) {
-      Prepare(130);
       for (int from = 1; from < ranks; ++from) {
         Receive(from);
         Send(from);
