@@ -12,7 +12,6 @@
 
 namespace stipple {
 
-
 namespace {
 
 constexpr Command kCommands[] = {
