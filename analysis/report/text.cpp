@@ -41,6 +41,28 @@ struct Match : Cases... {
 template <class... Cases>
 Match(Cases...) -> Match<Cases...>;  // clang 14 does not find it by itself
 
+/// Bytes of a trace may be no UTF-8: what is none becomes U+FFFD, as in JSON.
+std::string Sound(const std::string& text) {
+  const auto is_plain = [](char c) { return static_cast<signed char>(c) >= 0; };
+  if (std::ranges::all_of(text, is_plain)) return text;
+  const std::string json = Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
+  return Json::parse(json).get<std::string>();
+}
+
+/// One line, and nothing that a terminal would obey.
+std::string Shown(const std::string& text) {
+  std::string shown = Sound(text);
+  for (char& c : shown)
+    if ((c >= 0 && c < ' ') || c == '\x7f') c = ' ';
+  return shown;
+}
+
+/// Characters of UTF-8.
+std::size_t WidthOf(const std::string& text) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(text, [](char c) { return (c & 0xc0) != 0x80; }));
+}
+
 /// As tools that draw flames write a path.
 std::string Joined(const std::vector<std::string>& path) {
   std::string text;
@@ -49,17 +71,20 @@ std::string Joined(const std::vector<std::string>& path) {
 }
 
 /// Seconds have fixed decimals; of other values nobody knows how large or small they are.
-bool IsSeconds(const Column& column) { return column.name.ends_with("_s"); }
+bool IsSeconds(const Column& column) {
+  return column.name.ends_with("_s") && !column.name.ends_with("_per_s");
+}
 
 std::string CellText(const Cell& cell, const Column& column) {
   return std::visit(Match{[](std::monostate) { return std::string("-"); },
                           [](std::int64_t v) { return fmt::format("{}", v); },
                           [&column](double v) {
+                            if (!std::isfinite(v)) return std::string("-");
                             return IsSeconds(column) ? fmt::format("{:.6f}", v)
                                                      : fmt::format("{:.6g}", v);
                           },
-                          [](const std::string& v) { return v; },
-                          [](const std::vector<std::string>& v) { return Joined(v); }},
+                          [](const std::string& v) { return Shown(v); },
+                          [](const std::vector<std::string>& v) { return Shown(Joined(v)); }},
                     cell);
 }
 
@@ -78,9 +103,11 @@ std::string CellCsv(const Cell& cell, const Column& column) {
       Match{[](std::monostate) { return std::string(); },
             [](std::int64_t v) { return fmt::format("{}", v); },
             [&column](double v) {
+              if (!std::isfinite(v)) return std::string();
               return IsSeconds(column) ? fmt::format("{:.9f}", v) : fmt::format("{}", v);
             },
-            quoted, [&quoted](const std::vector<std::string>& v) { return quoted(Joined(v)); }},
+            [&quoted](const std::string& v) { return quoted(Sound(v)); },
+            [&quoted](const std::vector<std::string>& v) { return quoted(Sound(Joined(v))); }},
       cell);
 }
 
@@ -167,7 +194,7 @@ std::string TableText(const Table& full) {
   }
   for (const auto& line : lines) {
     widths.resize(line.size());
-    for (std::size_t c = 0; c < line.size(); ++c) widths[c] = std::max(widths[c], line[c].size());
+    for (std::size_t c = 0; c < line.size(); ++c) widths[c] = std::max(widths[c], WidthOf(line[c]));
   }
   std::string out;
   for (const auto& line : lines) {

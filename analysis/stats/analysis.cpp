@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "analysis/stats/causes.h"
 #include "analysis/stats/estimate.h"
 #include "analysis/stats/profile.h"
 #include "analysis/stats/profile_visitor.h"
@@ -73,11 +74,7 @@ void Analysis::ScanAll() {
 std::vector<Blame> BlameOf(const Analysis& analysis, const Selection& selection) {
   if (!selection.WholeTime() || selection.ranks)
     return BlameOf(analysis.trace, analysis.mpi, analysis.waits, selection);
-  if (!analysis.blames) {
-    analysis.blames = BlameOf(analysis.trace, analysis.mpi, analysis.waits, selection);
-    SaveAnalysis(analysis);
-  }
-  return *analysis.blames;
+  return CausesOf(analysis, selection).blames;
 }
 
 }  // namespace stipple

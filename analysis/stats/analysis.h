@@ -10,7 +10,10 @@
 #include <vector>
 
 #include "analysis/stats/blame.h"
+#include "analysis/stats/critical_path.h"
+#include "analysis/stats/imbalance_split.h"
 #include "analysis/stats/kernel_time.h"
+#include "analysis/stats/phases.h"
 #include "analysis/stats/selection.h"
 #include "analysis/stats/waits.h"
 #include "analysis/trace/health.h"
@@ -82,7 +85,12 @@ struct Analysis {
   KernelTime kernel;              // by location
   TraceHealth health;             // all that is wrong with the archive
   // What not everyone asks for: made when it is, and then kept in the index as well.
-  mutable std::optional<std::vector<Blame>> blames;  // of the whole run; ask BlameOf
+  // Of the whole run; ask CausesOf.
+  mutable std::optional<std::vector<Blame>> blames;
+  mutable std::optional<std::vector<PathPiece>> path;
+  mutable std::optional<std::vector<PathRow>> path_rows;
+  mutable std::optional<std::vector<Phase>> phases;
+  mutable std::optional<std::vector<SplitPart>> split;
 
  private:
   void ScanAll();

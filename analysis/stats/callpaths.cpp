@@ -101,13 +101,15 @@ class PathVisitor {
   void Finish(std::uint64_t ticks) { Charge(ticks); }
 
  private:
-  bool IsInside(std::uint64_t ticks) const { return begin_ <= ticks && ticks <= end_; }
+  bool IsInside(std::uint64_t ticks) const {
+    return begin_ <= ticks && (ticks < end_ || end_ == kNoTickLimit);
+  }
   std::uint32_t Top() const { return nodes_.empty() ? 0 : nodes_.back(); }
 
   /// The time since the last event is the innermost frame's.
   void Charge(std::uint64_t ticks) {
     const std::uint64_t now = std::clamp(ticks, begin_, end_);
-    counts_ = now == ticks;
+    counts_ = IsInside(ticks);
     if (now <= last_) return;
     if (!nodes_.empty())
       paths_.events.Own(Top()).exclusive_ns += static_cast<double>(now - last_) * ns_per_tick_;
@@ -197,6 +199,28 @@ void JoinSamples(const Trace& trace, const Process& process, NumberTree& from, P
   }
 }
 
+/// The paths that pass a selected region, with those that lead there; of these only what passes
+/// counts.
+PathTree Through(const PathTree& all, const Selection& selection) {
+  PathTree some;
+  std::vector<bool> passes(all.nodes().size());
+  std::vector<bool> leads(all.nodes().size());
+  for (std::size_t i = 1; i < passes.size(); ++i) {  // a parent stands before its children
+    const PathTree::Node& node = all.nodes()[i];
+    passes[i] = passes[node.parent] || selection.HasRegion(node.name);
+  }
+  for (std::size_t i = passes.size(); i-- > 1;)
+    if (passes[i] || leads[i]) leads[all.nodes()[i].parent] = true;
+  std::vector<std::size_t> place(passes.size(), some.Root());
+  for (std::size_t i = 1; i < passes.size(); ++i) {
+    const PathTree::Node& node = all.nodes()[i];
+    if (!passes[i] && !leads[i]) continue;
+    place[i] = some.Child(place[node.parent], node.name);
+    if (passes[i]) some.Own(place[i]) += node.own;
+  }
+  return some;
+}
+
 Cell CountCell(std::uint64_t count) { return static_cast<std::int64_t>(count); }
 
 /// Rows of a subtree, in order, with `path` before each name.
@@ -280,6 +304,10 @@ CallPaths CallPathsOf(const Trace& trace, const Selection& selection) {
     JoinSamples(trace, trace.ProcessOf(*l), part.samples, paths.samples);
     paths.has_events |= part.has_events;
   }
+  if (selection.regions) {
+    paths.events = Through(paths.events, selection);
+    paths.samples = Through(paths.samples, selection);
+  }
   paths.events.Finish();
   paths.samples.Finish();
   paths.sample_count = paths.samples.nodes().front().samples_below;
@@ -320,11 +348,13 @@ Table SampledProfileTable(const CallPaths& paths) {
   for (const auto& [name, t] : by_name) order.emplace_back(-t.exclusive_ns, -t.inclusive_ns, name);
   std::ranges::sort(order);
   Table table{"profile", TableShape::kRows, {}, {}};
-  for (const char* name : {"region", "file", "line", "calls", "inclusive_s", "exclusive_s"})
+  for (const char* name :
+       {"region", "file", "line", "calls", "inclusive_s", "exclusive_s", "exclusive_low_s",
+        "exclusive_high_s", "inclusive_low_s", "inclusive_high_s"})
     table.columns.push_back({name});
   for (const auto& [exclusive, inclusive, name] : order)
-    table.rows.push_back(
-        RowOf(std::string(name), Cell(), Cell(), Cell(), -inclusive * 1e-9, -exclusive * 1e-9));
+    table.rows.push_back(RowOf(std::string(name), Cell(), Cell(), Cell(), -inclusive * 1e-9,
+                               -exclusive * 1e-9, Cell(), Cell(), Cell(), Cell()));
   return table;
 }
 
@@ -362,14 +392,20 @@ TableAnswer CallPathsAnswer(const Analysis& analysis, const Selection& selection
 }
 
 TableAnswer SampledProfileAnswer(const Analysis& analysis, const Selection& selection) {
-  const CallPaths paths = CallPathsOf(analysis.trace, selection);
+  constexpr std::size_t kExclusive = 5;
+  Selection all_regions = selection;  // a region's time is its own on all paths
+  all_regions.regions.reset();
+  const CallPaths paths = CallPathsOf(analysis.trace, all_regions);
   TableAnswer answer{SampledProfileTable(paths), "No region was visited."};
-  const auto& rows = answer.table.rows;
+  auto& rows = answer.table.rows;
+  std::erase_if(rows, [&selection](const std::vector<Cell>& row) {
+    return !selection.HasRegion(std::get<std::string>(row.front()));
+  });
   if (!rows.empty())
-    answer.headline = PercentText(std::get<double>(rows.front().back()), paths.sampled_ns * 1e-9) +
-                      " of the time is spent in " +
-                      ShortName(std::get<std::string>(rows.front().front())) + " itself. " +
-                      SamplesText(paths);
+    answer.headline =
+        PercentText(std::get<double>(rows.front()[kExclusive]), paths.sampled_ns * 1e-9) +
+        " of the time is spent in " + ShortName(std::get<std::string>(rows.front().front())) +
+        " itself. " + SamplesText(paths);
   return answer;
 }
 

@@ -8,6 +8,7 @@
 
 #include "analysis/stats/message_overhead.h"
 #include "analysis/stats/region_times.h"
+#include "analysis/stats/store.h"
 
 namespace stipple {
 namespace {
@@ -192,6 +193,18 @@ class Splitter {
   std::vector<Asker::Ticket> tickets_;  // by phase and rank
 };
 
+Causes FindCauses(const Analysis& analysis, const Selection& selection) {
+  const Trace& trace = analysis.trace;
+  WaitGraph graph(trace, analysis.mpi, analysis.waits);
+  Asker asker(trace);
+  Blamer blamer(trace, analysis.mpi, analysis.waits, selection, graph, asker);
+  const PathFinder finder(trace, selection, graph, asker);
+  const Splitter splitter(analysis, selection, asker);
+  const RegionAnswers answers = asker.Answers(trace);
+  return {std::move(blamer).Blames(answers), finder.path(), finder.Rows(answers), splitter.phases(),
+          splitter.Split(answers)};
+}
+
 }  // namespace
 
 std::vector<Blame> BlameOf(const Trace& trace, const MpiActivity& mpi,
@@ -203,15 +216,18 @@ std::vector<Blame> BlameOf(const Trace& trace, const MpiActivity& mpi,
 }
 
 Causes CausesOf(const Analysis& analysis, const Selection& selection) {
-  const Trace& trace = analysis.trace;
-  WaitGraph graph(trace, analysis.mpi, analysis.waits);
-  Asker asker(trace);
-  Blamer blamer(trace, analysis.mpi, analysis.waits, selection, graph, asker);
-  const PathFinder finder(trace, selection, graph, asker);
-  const Splitter splitter(analysis, selection, asker);
-  const RegionAnswers answers = asker.Answers(trace);
-  return {std::move(blamer).Blames(answers), finder.path(), finder.Rows(answers), splitter.phases(),
-          splitter.Split(answers)};
+  if (!selection.WholeTime() || selection.ranks) return FindCauses(analysis, selection);
+  if (!analysis.blames || !analysis.path || !analysis.path_rows || !analysis.phases ||
+      !analysis.split) {
+    Causes found = FindCauses(analysis, selection);
+    analysis.blames = std::move(found.blames);
+    analysis.path = std::move(found.path);
+    analysis.path_rows = std::move(found.path_rows);
+    analysis.phases = std::move(found.phases);
+    analysis.split = std::move(found.split);
+    SaveAnalysis(analysis);
+  }
+  return {*analysis.blames, *analysis.path, *analysis.path_rows, *analysis.phases, *analysis.split};
 }
 
 }  // namespace stipple

@@ -24,7 +24,8 @@ struct Causes {
   std::vector<SplitPart> split;    // by phase
 };
 
-/// Of the selected span and ranks; the path is of all ranks.
+/// Of the selected span and ranks; the path is of all ranks. Those of the whole run are made once
+/// and kept in the archive's index.
 Causes CausesOf(const Analysis& analysis, const Selection& selection);
 
 }  // namespace stipple

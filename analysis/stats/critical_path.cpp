@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 
+#include "analysis/stats/analysis.h"
 #include "analysis/stats/finding_of.h"
 #include "analysis/stats/number.h"
 #include "analysis/trace/demangle.h"

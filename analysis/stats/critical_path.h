@@ -16,12 +16,13 @@
 #include <string>
 #include <vector>
 
-#include "analysis/stats/analysis.h"
 #include "analysis/stats/selection.h"
 #include "analysis/stats/table.h"
 #include "analysis/stats/wait_graph.h"
 
 namespace stipple {
+
+struct Analysis;
 
 /// The path is on this rank.
 struct PathPiece {

@@ -250,12 +250,12 @@ void BlameMessages(const Evidence& e, const MessageCost& cost, Finding& f) {
   f.cause = "message-overhead";
   f.gain_s = cost.seconds / static_cast<double>(e.nodes.size());
   f.sentence = "The " + words.Noun() + "s spend " + PercentText(cost.seconds, e.span_s) +
-               " of the run on messages, most of it in " + cost.function;
+               " of the run in MPI without waiting, most of it in " + cost.function;
   std::string if_mended = "if less were moved";
   const double bytes = static_cast<double>(cost.bytes);
   const double messages = static_cast<double>(cost.messages);
   if (cost.messages > 0 && bytes <= kSmallBytes * messages) {
-    f.sentence += ": they send " + FormatCount(static_cast<std::int64_t>(cost.messages)) + " of " +
+    f.sentence += ": they send " + FormatCount(cost.messages, "message") + " of " +
                   FormatBytes(bytes / messages);
     f.gain_s *= 1 - static_cast<double>(std::min(cost.packed, cost.messages)) / messages;
     if_mended = "if small messages were sent together";

@@ -5,6 +5,7 @@
 #include <array>
 #include <map>
 
+#include "analysis/stats/analysis.h"
 #include "analysis/stats/number.h"
 #include "analysis/stats/states.h"
 #include "analysis/trace/demangle.h"
@@ -95,8 +96,11 @@ std::vector<SplitPart> SplitOf(const Analysis& analysis, const Selection& select
   std::vector<int> ranks;
   for (const RankRegions& r : regions) ranks.push_back(r.rank);
   std::ranges::sort(ranks);
-  const std::vector<RankStates> states =
-      StatesOf(analysis, {phase.begin_ns, phase.end_ns, std::move(ranks)});
+  Selection in_phase;
+  in_phase.begin_ns = phase.begin_ns;
+  in_phase.end_ns = phase.end_ns;
+  in_phase.ranks = std::move(ranks);
+  const std::vector<RankStates> states = StatesOf(analysis, in_phase);
   const RankStates& busiest = *std::ranges::max_element(states, {}, &RankStates::user_ns);
   const auto [more, dearer] = WorkOf(analysis.trace, busiest.rank, regions);
   const double user_s = AboveMean(states, busiest, [](const RankStates& s) { return s.user_ns; });

@@ -27,6 +27,8 @@
 
 namespace stipple {
 
+struct Analysis;
+
 enum class SplitKind : std::uint32_t { kMoreWork, kDearerWork, kSystem, kMessages, kWaiting };
 inline constexpr std::size_t kSplitKinds = 5;
 std::string_view NameOf(SplitKind kind);

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
+#include <vector>
 
 namespace stipple {
 namespace {
@@ -11,9 +11,15 @@ namespace {
 // Up to so many bytes a message costs about as much as an empty one.
 constexpr std::uint64_t kPackedBytes = 4096;
 
-bool BeginsOrEndsMpi(const std::string& region) {
-  static const std::set<std::string> kNames = {"MPI_Init", "MPI_Init_thread", "MPI_Finalize"};
-  return kNames.contains(region);
+/// By region: is it a call whose time is that of messages? Not that of the beginning and end of
+/// MPI, and of files.
+std::vector<bool> AboutMessages(const Trace& trace) {
+  std::vector<bool> about;
+  for (const Region& r : trace.regions())
+    about.push_back(r.kind == RegionKind::kMpi && r.name != "MPI_Init" &&
+                    r.name != "MPI_Init_thread" && r.name != "MPI_Finalize" &&
+                    !r.name.starts_with("MPI_File_"));
+  return about;
 }
 
 void CountMessages(const Analysis& analysis, const Selection& selection, MessageCost& cost) {
@@ -45,7 +51,8 @@ MessageCost CostOfMessages(const Analysis& analysis, const Selection& selection)
   std::map<int, double> by_rank;
   for (const int rank : trace.RanksInOrder())
     if (!trace.IsHost(rank) && selection.HasRank(rank)) by_rank[rank] = 0;
-  std::map<std::uint32_t, double> by_region;
+  const std::vector<bool> about_messages = AboutMessages(trace);
+  std::vector<double> by_region(trace.regions().size());
   for (std::size_t c = 0; c < analysis.mpi.calls.size(); ++c) {
     const MpiCall& call = analysis.mpi.calls[c];
     const Location& l = trace.locations()[call.location];
@@ -53,20 +60,19 @@ MessageCost CostOfMessages(const Analysis& analysis, const Selection& selection)
     if (!l.IsMain() || rank == by_rank.end()) continue;
     const std::int64_t arrival = selection.Clamp(call.begin_ns + analysis.waits[c].idle_ns);
     const double seconds = static_cast<double>(selection.Clamp(call.end_ns) - arrival) * 1e-9;
-    if (seconds <= 0 || BeginsOrEndsMpi(trace.regions()[call.region].name)) continue;
+    if (seconds <= 0 || !about_messages[call.region]) continue;
     rank->second += seconds;
     by_region[call.region] += seconds;
   }
   MessageCost cost;
-  if (by_region.empty()) return cost;
+  if (by_rank.empty() || by_region.empty()) return cost;
   std::vector<double> seconds;
   for (const auto& [rank, s] : by_rank) seconds.push_back(s);
   const auto median = seconds.begin() + static_cast<std::ptrdiff_t>((seconds.size() - 1) / 2);
   std::ranges::nth_element(seconds, median);
   cost.seconds = *median * static_cast<double>(seconds.size());
-  const auto most =
-      std::ranges::max_element(by_region, {}, &std::map<std::uint32_t, double>::value_type::second);
-  cost.function = trace.regions()[most->first].name;
+  const auto most = std::ranges::max_element(by_region);
+  cost.function = trace.regions()[static_cast<std::size_t>(most - by_region.begin())].name;
   CountMessages(analysis, selection, cost);
   return cost;
 }

@@ -19,7 +19,7 @@ struct MessageCost {
   std::uint64_t packed = 0;  // so many would do if each channel's were sent in pieces of 4 kB
 };
 
-/// Beginning and end of MPI are left out: what they cost does not depend on the messages. The
+/// Beginning and end of MPI, and its files, are left out: what they cost is not messages'. The
 /// median, because time that few ranks pay is not what messages cost but what these ranks do; with
 /// an even number of nodes the lower one.
 MessageCost CostOfMessages(const Analysis& analysis, const Selection& selection);

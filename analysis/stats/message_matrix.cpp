@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/stats/message_waits.h"
 #include "analysis/stats/number.h"
 
 namespace stipple {
@@ -121,7 +122,7 @@ Table MeanSizeTable(const Analysis& analysis, const Selection& selection) {
 Table WaitMatrix(const Analysis& analysis, const Selection& selection) {
   const Places places(analysis.trace, selection);
   std::vector<double> seconds(places.count() * places.count());
-  for (const Blame& b : BlameOf(analysis, selection))
+  for (const Blame& b : SelectedBlame(analysis, selection))
     if (const auto at = places.At(b.waiter, b.culprit)) seconds[*at] += b.seconds;
   return places.TableOf("wait", "waiter", [&](std::size_t at) { return seconds[at]; });
 }

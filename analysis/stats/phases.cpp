@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/stats/analysis.h"
 #include "analysis/stats/kernel_time.h"
+#include "analysis/stats/number.h"
 #include "analysis/stats/timeline_of.h"
 
 namespace stipple {
@@ -167,6 +169,23 @@ std::vector<Phase> PhasesOf(const Analysis& analysis, const Selection& selection
     phases.back().end_ns = time_ns(end);
   }
   return phases;
+}
+
+std::string PhasesSentence(const std::vector<Phase>& phases) {
+  if (phases.empty()) return "The archive holds no time.";
+  const Phase* most = &phases.front();  // most computation above the mean, in seconds
+  const auto lost_ns = [](const Phase& p) {
+    return (p.max_over_mean - 1) * p.shares[static_cast<std::size_t>(State::kUser)] *
+           static_cast<double>(p.end_ns - p.begin_ns);
+  };
+  for (const Phase& p : phases)
+    if (lost_ns(p) > lost_ns(*most)) most = &p;
+  return "The run has " + FormatCount(phases.size(), "phase") +
+         "; most is lost by imbalance between " +
+         FormatSeconds(static_cast<double>(most->begin_ns) * 1e-9) + " and " +
+         FormatSeconds(static_cast<double>(most->end_ns) * 1e-9) + ", where rank " +
+         std::to_string(most->busiest_rank) + " computes " +
+         FormatThreeDigits(most->max_over_mean) + " times the mean.";
 }
 
 Table PhasesTable(const Analysis& analysis, const std::vector<Phase>& phases) {

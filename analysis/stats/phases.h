@@ -18,14 +18,16 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
-#include "analysis/stats/analysis.h"
 #include "analysis/stats/selection.h"
 #include "analysis/stats/table.h"
 #include "analysis/stats/timeline.h"
 
 namespace stipple {
+
+struct Analysis;
 
 inline constexpr std::size_t kMostPhases = 12;
 
@@ -46,7 +48,12 @@ std::vector<Phase> PhasesOf(const Analysis& analysis, const Selection& selection
 std::vector<std::size_t> ChangePointsOf(std::span<const std::vector<double>> series,
                                         std::size_t most_phases);
 
-/// Rows begin_s, end_s, user, system, message, idle, max_over_mean, busiest_rank.
+/// "The run has 3 phases; ..."
+std::string PhasesSentence(const std::vector<Phase>& phases);
+
+/// Rows begin_s, end_s, user, system, message, idle, max_over_mean, busiest_rank. Shares are of the
+/// ranks' time, so user is the phase's parallel efficiency and 1 / max_over_mean
+/// its load balance.
 Table PhasesTable(const Analysis& analysis, const std::vector<Phase>& phases);
 
 }  // namespace stipple

@@ -106,7 +106,8 @@ Table ProfileTable(const Analysis& analysis, const Selection& selection, bool pe
   std::vector<std::tuple<double, int, std::size_t>> order;  // most exclusive time first
   for (const auto& [rank, times] : by_rank)
     for (std::size_t r = 0; r < times.size(); ++r)
-      if (times[r].calls != 0 || times[r].inclusive_ns > 0)
+      if ((times[r].calls != 0 || times[r].inclusive_ns > 0) &&
+          selection.HasRegion(static_cast<std::uint32_t>(r)))
         order.emplace_back(-times[r].exclusive_ns, rank, r);
   std::ranges::sort(order);
   for (const auto& [ignored, rank, r] : order) {

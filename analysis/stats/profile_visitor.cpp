@@ -24,7 +24,8 @@ void ProfileVisitor::Reserve(Hot& hot, std::size_t frames) {
 
 // Enter or leave, at random, is a branch that no processor foretells. So both take the same way:
 // what a leave takes off the stack, an enter puts there, and it is put there for both. Only what
-// never happens in a sound stream is a branch: a leave of a region that is not on top.
+// seldom happens is a branch, and for Function: a leave of a region that is not on top, and what
+// the collector wants to see, for with a call here the loop would not have its registers to itself.
 std::size_t ProfileVisitor::Block(Hot& hot, const EventWord* words, std::size_t count,
                                   std::uint64_t offset) {
   if (TimeOf(words[0]) + offset < hot.begin || TimeOf(words[count - 1]) + offset > hot.end)
@@ -40,15 +41,14 @@ std::size_t ProfileVisitor::Block(Hot& hot, const EventWord* words, std::size_t 
     const std::uint64_t leave = (word / kLeaveBit) & 1;
     RegionTicks* const region = regions + (word & kRegionMask);
     RegionTicks** const place = top + 1 - leave;
-    if ((static_cast<std::uint64_t>(*place != region) & leave) != 0) [[unlikely]]
+    if (((static_cast<std::uint64_t>(*place != region) & leave) | region->is_watched) != 0)
+        [[unlikely]]
       break;
     (*top)->exclusive += now - last;
     last = now;
     *place = region;
     top = place - leave;
     region->Count(leave, now);
-    if (region->is_watched != 0) [[unlikely]]
-      collector_->Function(NumberOf(region), leave != 0, now);
   }
   hot.top = top;
   hot.last = last;

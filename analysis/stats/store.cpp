@@ -37,6 +37,10 @@ void ForEachPart(SomeAnalysis& a, Part&& part) {
   part("kernel", a.kernel);
   part("health", a.health);
   part("blames", a.blames);
+  part("path", a.path);
+  part("path_rows", a.path_rows);
+  part("phases", a.phases);
+  part("split", a.split);
 }
 
 class Saver {

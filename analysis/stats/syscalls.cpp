@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "analysis/stats/number.h"
+#include "analysis/trace/call_stack.h"
 #include "analysis/trace/kernel.h"
 
 namespace stipple {
@@ -48,6 +49,7 @@ class CallVisitor {
   }
 
   void Function(std::uint32_t region, bool leave, std::uint64_t) {
+    if (selection_.regions) stack_.Function(region, leave);
     if (!is_mpi_[region]) return;
     if (!leave)
       ++depth_;
@@ -55,7 +57,8 @@ class CallVisitor {
       --depth_;
   }
   void Record(const EventWord* word, std::uint64_t ticks) {
-    if (KindOf(*word) != RecordKind::kSystemCall) return;
+    if (selection_.regions) Follow(word);
+    if (KindOf(*word) != RecordKind::kSystemCall || !IsInRegion()) return;
     const auto r = RecordAt<SystemCall>(word);
     const std::uint64_t enter = std::max(r.enter_ticks, location_.first_ticks);
     const std::int64_t enter_ns = trace_.TimeNs(location_, std::min(enter, ticks));
@@ -73,10 +76,25 @@ class CallVisitor {
   const std::map<CallKey, CallTotals>& totals() const { return totals_; }
 
  private:
+  void Follow(const EventWord* word) {
+    if (KindOf(*word) == RecordKind::kOpenFrames)
+      stack_.Begin(word, OpenRegions(word, trace_.ProcessOf(location_).RegionCount()));
+    else
+      stack_.Record(word);
+  }
+  /// Whether one of the selected regions is open.
+  bool IsInRegion() const {
+    const Process& process = trace_.ProcessOf(location_);
+    return !selection_.regions || std::ranges::any_of(stack_.frames(), [&](std::uint32_t region) {
+      return selection_.HasRegion(process.regions[region]);
+    });
+  }
+
   const Trace& trace_;
   const Location& location_;
   const Selection& selection_;
   std::vector<bool> is_mpi_;
+  CallStack stack_;  // if only some regions are selected
   std::uint64_t depth_ = 0;
   std::map<CallKey, CallTotals> totals_;
 };

@@ -24,6 +24,8 @@ enum Takes : unsigned {
   kTakesWindow = 16,   // --window: a series over time
 };
 inline constexpr unsigned kTakesPlace = kTakesSpan | kTakesRanks;
+inline constexpr unsigned kTakesEverything =
+    kTakesPlace | kTakesRegions | kTakesMessages | kTakesWindow;
 
 struct TableEntry {
   std::string_view name;

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
@@ -50,23 +49,6 @@ std::string LibraryDirectory() {
   std::error_code error;
   const fs::path self = fs::read_symlink("/proc/self/exe", error);
   return (self.parent_path().parent_path() / "lib" / "stipple").lexically_normal();
-}
-
-void SelectionOptions::AddTo(CLI::App& app) {
-  app.add_option("--from", from_s, "begin, in seconds since the first event")->type_name("T");
-  app.add_option("--to", to_s, "end, in seconds since the first event")->type_name("T");
-  app.add_option("--ranks", ranks, "only these: 0-3,7,host")->type_name("R");
-}
-
-Selection SelectionOptions::For(const Trace& trace) const {
-  constexpr double kMostSeconds = 9e9;
-  Selection selection;
-  if (from_s != 0) selection.begin_ns = std::llround(std::clamp(from_s, 0.0, kMostSeconds) * 1e9);
-  if (to_s >= 0) selection.end_ns = std::llround(std::min(to_s, kMostSeconds) * 1e9);
-  if (selection.end_ns < selection.begin_ns)
-    throw InputError("--to", fmt::format("{} s is before --from {} s", to_s, from_s));
-  if (!ranks.empty()) selection.ranks = ParseRanks(trace, ranks);
-  return selection;
 }
 
 void WarnOfProblems(const Trace& trace, const TraceHealth& health) {

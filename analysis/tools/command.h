@@ -9,7 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/stats/selection.h"
 #include "analysis/trace/compact.h"
 #include "analysis/trace/trace.h"
 
@@ -33,7 +32,9 @@ int RunPrint(const Arguments& arguments);
 int RunStats(const Arguments& arguments);
 int RunPlot(const Arguments& arguments);
 int RunReport(const Arguments& arguments);
+int RunWatch(const Arguments& arguments);
 int RunCompact(const Arguments& arguments);
+int RunCompare(const Arguments& arguments);
 int RunView(const Arguments& arguments);
 int RunExemplar(const Arguments& arguments);
 
@@ -46,16 +47,6 @@ bool Parse(CLI::App& app, const Arguments& arguments);
 
 /// PREFIX/lib/stipple of the running program.
 std::string LibraryDirectory();
-
-/// --from, --to (seconds) and --ranks, which several commands have.
-struct SelectionOptions {
-  double from_s = 0;
-  double to_s = -1;
-  std::string ranks;
-
-  void AddTo(CLI::App& app);
-  Selection For(const Trace& trace) const;
-};
 
 /// Loss, and what was left out, are shown on every output: one line each on standard error.
 void WarnOfProblems(const Trace& trace, const TraceHealth& health);

@@ -16,6 +16,7 @@
 #include "analysis/stats/timeline_of.h"
 #include "analysis/tools/command.h"
 #include "analysis/tools/progress.h"
+#include "analysis/tools/selection_options.h"
 #include "analysis/tools/views_library.h"
 #include "analysis/trace/input_error.h"
 

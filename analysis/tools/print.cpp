@@ -13,6 +13,7 @@
 #include "analysis/stats/analysis.h"
 #include "analysis/tools/command.h"
 #include "analysis/tools/progress.h"
+#include "analysis/tools/selection_options.h"
 #include "analysis/trace/call_stack.h"
 #include "analysis/trace/demangle.h"
 
@@ -61,7 +62,9 @@ void PrintCanonical(const Trace& trace, const Selection& selection) {
     while (const Event* event = cursor.Next()) {
       const std::uint32_t context = stack.context();
       const std::span<const std::uint32_t> left = Follow(trace.ProcessOf(l), stack, *event);
-      if ((!selection.WholeTime() || trace.kept()) && !selection.HasTime(trace.TimeNs(l, event->ticks))) continue;
+      if ((!selection.WholeTime() || trace.kept()) &&
+          !selection.HasTime(trace.TimeNs(l, event->ticks)))
+        continue;
       if (stack.context() != context) out.Line("context {}", stack.context());
       for (const std::uint32_t region : left)
         out.Line("{} {}", event->record != nullptr ? "unwound" : "unclosed",
@@ -124,8 +127,7 @@ std::string WhereText(const Trace& trace, const CallStack& stack, const EventWor
 void PrintOne(const Trace& trace, const Selection& selection, Reader& r, Output& out) {
   const bool enter = r.event->record == nullptr && !r.event->leave;
   const std::uint32_t context = r.stack.context();
-  const std::size_t left =
-      Follow(trace.ProcessOf(r.cursor.location()), r.stack, *r.event).size();
+  const std::size_t left = Follow(trace.ProcessOf(r.cursor.location()), r.stack, *r.event).size();
   if (!selection.HasTime(r.time_ns)) return;
   std::string text = EventText(trace, r.cursor.location(), *r.event);
   if (r.event->record != nullptr)
@@ -157,7 +159,7 @@ void PrintMerged(const Trace& trace, const Selection& selection) {
   while (!next.empty()) {
     const std::size_t i = next.top();
     next.pop();
-    if (readers[i].time_ns > selection.end_ns) continue;
+    if (readers[i].time_ns >= selection.end_ns) continue;
     PrintOne(trace, selection, readers[i], out);
     if (readers[i].Advance(trace)) next.push(i);
   }

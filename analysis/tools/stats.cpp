@@ -8,6 +8,7 @@
 #include "analysis/stats/tables.h"
 #include "analysis/tools/command.h"
 #include "analysis/tools/progress.h"
+#include "analysis/tools/selection_options.h"
 #include "analysis/trace/input_error.h"
 
 namespace stipple {
@@ -33,8 +34,20 @@ const auto& Choose(const Rows& rows, std::string_view option, const std::string&
 std::string TableHelp() {
   std::string text = "Tables:\n";
   for (const TableEntry& t : TableEntries())
-    text += fmt::format("  {:<10}{}\n", t.name, t.description);
+    text += fmt::format("  {:<13}{}\n", t.name, t.description);
   return text;
+}
+
+/// Why the table is empty or of zeros; empty when there is something to count.
+std::string NothingText(const Trace& trace, const Selection& selection) {
+  const auto seconds = [](std::int64_t ns) { return static_cast<double>(ns) / 1e9; };
+  if (trace.EventCount() == 0) return "The archive holds no events.";
+  if (selection.begin_ns > trace.SpanNs())
+    return fmt::format("There is nothing from {} s on: the run ends at {} s.",
+                       seconds(selection.begin_ns), seconds(trace.SpanNs()));
+  if (selection.begin_ns == selection.end_ns)
+    return fmt::format("There is no time between {0} s and {0} s.", seconds(selection.end_ns));
+  return {};
 }
 
 }  // namespace
@@ -49,26 +62,28 @@ int RunStats(const Arguments& arguments) {
   app.add_option("A", archive, "the archive")->required();
   app.add_option("--table", table, "which; see below")->required()->type_name("NAME");
   app.add_option("--format", format, "text, csv or json")->type_name("FORMAT");
-  app.add_flag("--per-rank", per_rank, "a row for each rank instead of the sum (profile)");
-  selected.AddTo(app);
+  app.add_flag("--per-rank", per_rank, "a row for each rank instead of the sum");
+  selected.AddTo(app, kTakesEverything);
   app.footer(TableHelp());
   if (!Parse(app, arguments)) return 0;
   const TableEntry& entry = Choose(TableEntries(), "--table", table);
   const FormatEntry& form = Choose(kFormats, "--format", format);
-  // `states` is by rank anyway.
-  if (per_rank && !entry.per_rank && entry.name != "states")
+  selected.RefuseFor(entry);
+  const std::int64_t window_ns = selected.WindowNs();
+  // These are by rank anyway.
+  if (per_rank && !entry.per_rank && entry.name != "states" && entry.name != "status")
     throw InputError("--per-rank", fmt::format("table '{}' cannot be given by rank", entry.name));
   ProgressLine progress;
   const Trace trace = Trace::Open(archive, progress.meter());
   const Selection selection = selected.For(trace);
   const Analysis analysis(trace);
-  const TableAnswer answer = entry.make(analysis, selection, TableOptions{per_rank, 0});
+  const TableAnswer answer = entry.make(analysis, selection, {per_rank, window_ns});
   progress.Stop();
-  const bool empty = trace.EventCount() == 0;
+  const std::string nothing = NothingText(trace, selection);
   if (form.name == "text")
-    WriteOut((empty ? "The archive holds no events." : answer.headline) + RunningText(trace) +
-             "\n\n");
+    WriteOut((nothing.empty() ? answer.headline : nothing) + RunningText(trace) + "\n\n");
   WriteOut(form.text(answer.table));
+  if (!nothing.empty() && form.name != "text") fmt::print(stderr, "stipple: {}\n", nothing);
   WarnOfProblems(trace, analysis.health);
   return 0;
 }

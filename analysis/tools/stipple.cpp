@@ -12,8 +12,6 @@
 
 namespace stipple {
 
-int RunCompare(const Arguments& arguments);
-
 namespace {
 
 constexpr Command kCommands[] = {
@@ -26,6 +24,7 @@ constexpr Command kCommands[] = {
     {"plot", RunPlot, "a display of any statistic: SVG, PDF or PNG"},
     {"report", RunReport, "a self-contained HTML page"},
     {"view", RunView, "an interactive window on a run"},
+    {"watch", RunWatch, "a run that is still going, page after page"},
     {"compact", RunCompact, "make an archive smaller"},
     {"compare", RunCompare, "two runs on one scale: what changed"},
     {"exemplar", RunExemplar, "the ray tracer's experiments: charts on a page"},

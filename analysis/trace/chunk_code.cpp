@@ -64,10 +64,10 @@ void Append(std::string& to, const void* data, std::size_t bytes) {
 }  // namespace
 
 CallModel CallMemory::Begin(std::size_t words) {
-  if (frames_.size() < words + 1) frames_.resize(words + 1);
-  frames_[0] = {0, 0};
+  if (open_.size() < words + 2) open_.resize(words + 2);
+  open_[0] = open_[1] = 0;
   guesses_.assign(CallModel::kPlaces, 0);
-  return {frames_.data(), guesses_.data()};
+  return {open_.data() + 1, guesses_.data()};
 }
 
 struct ChunkCoder::State {
@@ -215,7 +215,8 @@ struct ChunkDecoder::State {
   ZSTD_DCtx* zstd = ZSTD_createDCtx();
   CallMemory memory;
   std::vector<char> content;
-  std::vector<std::uint32_t> table;
+  // Regions that one byte names; those that it does not are kKindBase.
+  std::array<std::uint32_t, kWideIndex + 1> table;
   // What is left of each column.
   const char* operations = nullptr;
   const char* operations_end = nullptr;
@@ -248,7 +249,7 @@ struct ChunkDecoder::State {
                               std::uint64_t{c.operations} + std::uint64_t{c.distances} +
                               std::uint64_t{c.regions};
     if (all != size || c.table > kWideIndex) return false;
-    table.resize(c.table);
+    table.fill(kKindBase);
     const char* at = content.data() + sizeof(c);
     if (c.table != 0) std::memcpy(table.data(), at, c.table * sizeof(std::uint32_t));
     wide = at + c.table * sizeof(std::uint32_t);
@@ -263,11 +264,9 @@ struct ChunkDecoder::State {
   bool Region(std::uint32_t& region) {
     if (regions == regions_end) return false;
     const auto index = static_cast<unsigned char>(*regions++);
-    if (index < table.size()) {
-      region = table[index];
-    } else {
-      if (index != kWideIndex || regions_end - regions < static_cast<std::ptrdiff_t>(kRegionBytes))
-        return false;
+    region = table[index];
+    if (index == kWideIndex) {
+      if (regions_end - regions < static_cast<std::ptrdiff_t>(kRegionBytes)) return false;
       region = 0;
       std::memcpy(&region, regions, kRegionBytes);
       regions += kRegionBytes;
@@ -307,6 +306,7 @@ bool ChunkDecoder::Decode(std::span<const std::byte> frame, std::span<EventWord>
   EventWord* const end = to + words.size();
   CallModel model = s.memory.Begin(words.size());
   const char* distance = s.distances;
+  const char* regions = s.regions;
   const char* const distances_end = s.distances_end;
   const char* const operations_end = s.operations_end;
   for (const char* at = s.operations; at != operations_end; ++at) {
@@ -328,9 +328,16 @@ bool ChunkDecoder::Decode(std::span<const std::byte> frame, std::span<EventWord>
     distance += length;
     now += more & kMasks[length];
     const bool leave = operation == Operation::kLeaveTop || operation == Operation::kLeave;
+    const bool is_named = operation >= Operation::kLeave;
     std::uint32_t region = 0;
-    if (operation >= Operation::kLeave) [[unlikely]] {
-      if (!s.Region(region)) return false;
+    // With the slack there is a byte, even behind the last region.
+    const std::uint32_t named = s.table[static_cast<unsigned char>(*regions)];
+    const bool is_odd = (is_named & ((named >= kKindBase) | (regions == s.regions_end))) |
+                        (leave & (is_named | (model.depth() == 0)));
+    if (is_odd) [[unlikely]] {
+      s.regions = regions;
+      if (!is_named || !s.Region(region)) return false;
+      regions = s.regions;
       if (leave) {
         model.Leave(region);
       } else {
@@ -338,9 +345,8 @@ bool ChunkDecoder::Decode(std::span<const std::byte> frame, std::span<EventWord>
         model.Enter(region);
       }
     } else {
-      if (leave && model.depth() == 0) [[unlikely]]
-        return false;
-      region = model.Step(leave);
+      regions += is_named ? 1 : 0;
+      region = model.Step(leave, is_named, named);
     }
     const std::uint64_t time = now & (0 - static_cast<std::uint64_t>(length != 0));
     *to++ = MakeEvent(time, leave, RegionId{region});

@@ -25,47 +25,55 @@
 
 namespace stipple {
 
-/// Functions that are open, each with its last child, and what was entered where last time. A light
-/// hand on the memory of CallMemory, so that a loop can keep it in registers.
+/// Functions that are open, what the innermost of them called last, and what was entered where last
+/// time. A light hand on the memory of CallMemory, so that a loop can keep it in registers: each
+/// event waits for the one before it, so what it needs of that one must be at hand.
 class CallModel {
  public:
-  struct Frame {
-    std::uint32_t region;
-    std::uint32_t last_child;
-  };
-  CallModel(Frame* frames, std::uint32_t* guesses) : frames_(frames), guesses_(guesses) {}
+  /// `open`: [-1] and [0] stand for what is outside of all.
+  CallModel(std::uint32_t* open, std::uint32_t* guesses) : open_(open), guesses_(guesses) {}
 
   std::size_t depth() const { return depth_; }
-  std::uint32_t top() const { return frames_[depth_].region; }
+  std::uint32_t top() const { return top_; }
   /// Of the next function to be entered.
-  std::uint32_t& Guess() const { return guesses_[Place(frames_[depth_])]; }
-  void Enter(std::uint32_t region) { frames_[++depth_] = {region, 0}; }
+  std::uint32_t& Guess() const {
+    return guesses_[(top_ * 0x9E3779B1U + last_child_ * 0x85EBCA6BU) >> 20];
+  }
+  void Enter(std::uint32_t region) {
+    open_[++depth_] = top_ = region;
+    last_child_ = 0;
+  }
   void Leave(std::uint32_t region) {
     if (depth_ != 0) --depth_;
-    frames_[depth_].last_child = region;
+    top_ = open_[depth_];
+    last_child_ = region;
   }
-  /// Leaves the top, which there is, or enters what was guessed; its region. Without a branch, for
-  /// nobody can foretell which of the two comes.
-  std::uint32_t Step(bool leave) {
-    const Frame now = frames_[depth_];
+  /// Leaves the top, which there is, or enters `named`, if it is, or else what was guessed; the
+  /// region. Without a branch, for nobody can foretell which of these comes.
+  std::uint32_t Step(bool leave, bool is_named, std::uint32_t named) {
+    // Masks: of a choice between two values the compiler may make a branch after all.
     const std::uint32_t leaves = 0 - static_cast<std::uint32_t>(leave);
-    const std::uint32_t guess = guesses_[Place(now)];
-    const std::uint32_t region = (now.region & leaves) | (guess & ~leaves);
+    const std::uint32_t names = 0 - static_cast<std::uint32_t>(is_named);
+    const std::uint32_t below = open_[static_cast<std::ptrdiff_t>(depth_) - 1];
+    std::uint32_t& guess = Guess();
+    const std::uint32_t entered = (guess & ~names) | (named & names);  // `names` is 0 at a leave
+    const std::uint32_t region = (entered & ~leaves) | (top_ & leaves);
+    guess = entered;
+    top_ = (entered & ~leaves) | (below & leaves);
+    last_child_ = region & leaves;
     depth_ += 1 - 2 * static_cast<std::size_t>(leave);
-    Frame& next = frames_[depth_];
-    next = {(next.region & leaves) | (region & ~leaves), region & leaves};
+    open_[depth_] = top_;
     return region;
   }
 
   static constexpr std::size_t kPlaces = 4096;
 
  private:
-  static std::uint32_t Place(const Frame& f) {
-    return (f.region * 0x9E3779B1U + f.last_child * 0x85EBCA6BU) >> 20;
-  }
-  Frame* frames_;  // [0]: outside of all
+  std::uint32_t* open_;
   std::uint32_t* guesses_;
   std::size_t depth_ = 0;
+  std::uint32_t top_ = 0;
+  std::uint32_t last_child_ = 0;
 };
 
 class CallMemory {
@@ -74,7 +82,7 @@ class CallMemory {
   CallModel Begin(std::size_t words);
 
  private:
-  std::vector<CallModel::Frame> frames_;
+  std::vector<std::uint32_t> open_;
   std::vector<std::uint32_t> guesses_;
 };
 

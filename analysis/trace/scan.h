@@ -9,8 +9,8 @@
 // thread's next chunk. An event whose clock was not read lies between its clocked neighbours, in
 // equal steps: an estimate; the neighbours are its bounds.
 //
-// The loop touches each word once and keeps its state in registers: about 2 ns an event. Whatever
-// is rare (records, unclocked runs, damage) is out of line.
+// Whatever is rare (records, unclocked runs, damage) is out of line, and state is in registers.
+// Most events are plain: a visitor that wants them gets many at once, after one test (HasBlocks).
 #ifndef STIPPLE_ANALYSIS_TRACE_SCAN_H
 #define STIPPLE_ANALYSIS_TRACE_SCAN_H
 

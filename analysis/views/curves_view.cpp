@@ -75,9 +75,13 @@ struct Spread {
 void AddRanks(Panel& panel, const SeriesColumn& column, const std::vector<Curve>& curves) {
   const bool host = HasHost(column.ranks);
   if (curves.size() <= kMostRankLines) {
-    for (std::size_t i = 0; i < curves.size(); ++i)
-      panel.lines.push_back({RowLabel(column.ranks[i], host), curves[i],
-                             ColoursOf("", panel.lines.size()).line, false});
+    // A rank has one colour; of several columns the later ones say which they are.
+    const bool dashed = column.column == "since_start", first = panel.lines.empty();
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+      std::string label = RowLabel(column.ranks[i], host);
+      if (!first) label += ", " + WordsFor(column.column);
+      panel.lines.push_back({label, curves[i], ColoursOf("", i).line, dashed});
+    }
     return;
   }
   const Spread spread(curves);

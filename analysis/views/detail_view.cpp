@@ -12,6 +12,7 @@
 #include "analysis/views/state_runs.h"
 #include "analysis/views/text.h"
 #include "analysis/views/view_list.h"
+#include "analysis/views/visit_layer.h"
 
 namespace stipple {
 namespace {
@@ -21,6 +22,7 @@ constexpr double kMarkSize = 11;
 constexpr double kMarkSpacing = 12;  // marks nearer than this become one numeral
 constexpr double kLeastPitchForMarks = 24;
 constexpr double kTop = 18;
+constexpr double kStripHeight = 40;  // of the message load, where there are too many for lines
 
 RowGridLimits DetailLimits(std::size_t rows) {
   RowGridLimits limits{
@@ -110,17 +112,75 @@ std::string NoteFor(const Timeline& detail, bool marks) {
   return note;
 }
 
+/// With visits each row has room for them below its states, and for marks above the next one.
+RowGrid GridOf(const ViewInput& input, const VisitDepths& depths) {
+  const Timeline& detail = *input.detail;
+  RowGridLimits limits = DetailLimits(detail.rows.size());
+  if (depths.count == 0) return MakeRowGrid(detail.rows, CulpritOf(input), limits);
+  constexpr double kStates = 20, kBetween = 26;
+  limits.max_pitch = kStates + depths.Height() + kBetween;
+  limits.max_height = 1e5;
+  limits.fill = kStates / limits.max_pitch;
+  RowGrid grid = MakeRowGrid(detail.rows, CulpritOf(input), limits);
+  // The host's row is apart already.
+  for (std::size_t i = 0; i < grid.rows.size(); ++i)
+    grid.rows[i].y = limits.top + static_cast<double>(i) * grid.pitch;
+  grid.height = static_cast<double>(grid.rows.size() - 1) * grid.pitch + kStates;
+  return grid;
+}
+
+void AddVisitLayers(Scene& scene, const ViewInput& input, const RowGrid& grid, const TimeAxis& axis,
+                    const VisitDepths& depths) {
+  Layer bars{"bars", {}}, names{"labels", {}};
+  for (std::size_t i = 0; i < grid.rows.size(); ++i)
+    AddVisits(*input.visits, i, depths, axis, grid.rows[i].y + grid.rows[i].height + 3, bars,
+              names);
+  scene.layers.push_back(std::move(bars));
+  scene.layers.push_back(std::move(names));
+}
+
+/// Too many messages for lines: how much was sent stands in a strip below the rows.
+bool HasLoadStrip(const Timeline& detail) {
+  return detail.message_count > 0 && !detail.sent_bytes.empty() &&
+         (detail.messages.size() > kMostLines || detail.messages.size() < detail.message_count);
+}
+
+Layer LoadStrip(const Timeline& detail, const TimeAxis& axis, double top) {
+  Layer layer{"band", {}};
+  double largest = 0;
+  for (const double bytes : detail.sent_bytes) largest = std::max(largest, bytes);
+  const auto count = static_cast<double>(detail.sent_bytes.size());
+  const double bottom = top + kStripHeight, step = axis.width() / count;
+  PolygonShape area{{{axis.left, bottom}}, kLoadFill};
+  double x = axis.left;
+  for (const double bytes : detail.sent_bytes) {
+    const double y = bottom - (largest > 0 ? bytes / largest : 0) * (kStripHeight - 6);
+    if (area.points.back().y != y)
+      area.points.insert(area.points.end(), {{x, area.points.back().y}, {x, y}});
+    x += step;
+  }
+  area.points.insert(area.points.end(), {{axis.right, area.points.back().y}, {axis.right, bottom}});
+  layer.shapes.emplace_back(std::move(area));
+  const double seconds = (detail.end_s - detail.begin_s) / count;
+  const double y = bottom - kStripHeight / 2;
+  const TextStyle style{.size = 11, .colour = kSecondary, .anchor = Anchor::kEnd};
+  layer.shapes.emplace_back(TextShape{axis.left - 10, y - 7, "load, most", style});
+  layer.shapes.emplace_back(
+      TextShape{axis.left - 10, y + 7, FormatBytes(largest / seconds) + "/s", style});
+  return layer;
+}
+
 }  // namespace
 
 Scene DetailScene(const ViewInput& input, double width) {
   Scene scene{.name = "detail", .width = width};
   if (!HasRows(input.detail) || !(input.detail->end_s > input.detail->begin_s)) return scene;
   const Timeline& detail = *input.detail;
-  const RowGrid grid = MakeRowGrid(detail.rows, CulpritOf(input), DetailLimits(detail.rows.size()));
+  const VisitDepths depths = VisitDepthsOf(input);
+  const RowGrid grid = GridOf(input, depths);
   const TimeAxis axis{detail.begin_s, detail.end_s, AxisLeft(grid), width};
   const bool marks = grid.pitch >= kLeastPitchForMarks && !detail.messages.empty();
-  const double bottom = grid.rows.front().y + grid.height + 6;
-  scene.height = std::ceil(bottom + kAxisHeight);
+  double bottom = grid.rows.back().y + grid.rows.back().height + 6 + depths.Height();
   scene.title = "Detail " + FormatSpan(detail.begin_s, detail.end_s);
   scene.description =
       fmt::format("States of each {} with {} messages as lines from sender to receiver.",
@@ -128,9 +188,15 @@ Scene DetailScene(const ViewInput& input, double width) {
   scene.note = NoteFor(detail, marks);
   scene.layers.push_back(
       StateLayer(MakeStateRuns(detail, grid, axis.width(), kQuadBudget), grid, axis));
+  if (depths.count > 0) AddVisitLayers(scene, input, grid, axis, depths);
   scene.layers.push_back(RowLabels(grid, axis.left - 10));
+  if (HasLoadStrip(detail)) {
+    scene.layers.push_back(LoadStrip(detail, axis, bottom));
+    bottom += kStripHeight + 6;
+  }
   Layer time{"axis", {}};
   AddTimeAxis(time, axis, bottom);
+  scene.height = std::ceil(bottom + kAxisHeight);
   scene.layers.push_back(std::move(time));
   scene.layers.push_back(MessageLines(input, grid, axis));
   if (!marks) return scene;

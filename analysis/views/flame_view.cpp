@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <map>
 
 #include "analysis/trace/demangle.h"
@@ -17,6 +16,7 @@
 #include "analysis/views/table_reading.h"
 #include "analysis/views/text.h"
 #include "analysis/views/view_list.h"
+#include "analysis/views/visit_layer.h"
 
 namespace stipple {
 namespace {
@@ -77,17 +77,6 @@ Tree TreeOf(const Table& table) {
     places[path] = at;
   }
   return tree;
-}
-
-/// Quiet, dark text is legible on all; the same name has the same colour in every picture.
-Colour ColourOfName(std::string_view name) {
-  if (name.starts_with("MPI_") || name.starts_with("PMPI_")) return kLoadFill;
-  constexpr Colour kQuiet[] = {{0xc9, 0xdc, 0xef}, {0xb7, 0xd0, 0xea}, {0xd6, 0xe3, 0xee},
-                               {0xcb, 0xe3, 0xdf}, {0xb9, 0xd9, 0xd4}, {0xd9, 0xe7, 0xd3},
-                               {0xd9, 0xd6, 0xea}, {0xe3, 0xdc, 0xe6}};
-  std::uint32_t hash = 2166136261U;  // FNV-1a
-  for (const char letter : name) hash = (hash ^ static_cast<unsigned char>(letter)) * 16777619U;
-  return kQuiet[(hash >> 8) % std::size(kQuiet)];
 }
 
 struct Drawing {

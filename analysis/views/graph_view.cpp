@@ -121,9 +121,9 @@ std::vector<Place> Axes(const ViewInput& input) {
   return found;
 }
 
-std::string LabelOf(const ViewInput& input, const std::vector<Cell>& row,
-                    const TableColumns& columns, int& rank) {
-  const std::string name = ShortName(RowName(row, columns));
+std::string LabelOf(const ViewInput& input, const Table& table, const TableColumns& columns,
+                    const std::vector<Cell>& row, int& rank) {
+  const std::string name = ShortName(RowName(table, row, columns));
   if (!columns.rank) return name;
   const TimelineRow named = RankNamed(input, CellText(row[*columns.rank]));
   rank = named.rank;
@@ -136,7 +136,7 @@ std::vector<Item> RowItems(const ViewInput& input, const Place& x, const Place& 
   const TableColumns columns = ColumnsOf(*x.table);
   for (const std::vector<Cell>& row : x.table->rows) {
     Item item{NumberOr(row[x.column]), NumberOr(row[y.column]), {}, -1};
-    item.label = LabelOf(input, row, columns, item.rank);
+    item.label = LabelOf(input, *x.table, columns, row, item.rank);
     items.push_back(std::move(item));
   }
   return items;

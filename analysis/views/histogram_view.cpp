@@ -65,7 +65,7 @@ std::vector<Bin> BinsOf(const Table& table, const TableColumns& columns, std::si
       if (!std::isfinite(bin.high)) bin.high = bin.low;
       bin.name = fmt::format("{}", bin.low);
     } else {
-      bin.name = RowName(row, columns);
+      bin.name = RowName(table, row, columns);
     }
     const auto [found, is_new] = place.try_emplace(bin.name, bins.size());
     if (is_new) bins.push_back(bin);

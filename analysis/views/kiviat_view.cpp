@@ -19,12 +19,12 @@
 namespace stipple {
 namespace {
 
-constexpr double kSide = 560, kRadius = 220;
-constexpr std::size_t kMostAxes = 128;   // beyond that neighbours share one
+constexpr double kWidth = 680, kHeight = 560, kRadius = 220;
+constexpr std::size_t kMostAxes = 2048;  // beyond that neighbours share one
 constexpr std::size_t kMostSpokes = 64;  // more lines would be a grey disc
 constexpr std::size_t kMostPolygons = 4;
 constexpr double kLabel = 12, kRingLabel = 11;
-constexpr Point kCentre{kSide / 2, kSide / 2};
+constexpr Point kCentre{kWidth / 2, kHeight / 2};
 
 struct Kiviat {
   const RankTable& table;
@@ -110,7 +110,7 @@ Layer Names(const Kiviat& kiviat) {
   Layer layer{"labels", {}};
   const std::vector<TimelineRow>& ranks = kiviat.table.ranks;
   const bool words = ranks.size() <= 16;
-  TextRoom room({0, 0, kSide, kSide});
+  TextRoom room({0, 0, kWidth, kHeight});
   const auto add = [&](std::size_t i) {
     const std::string label = RowLabel(ranks[i], kiviat.table.has_host());
     const std::string& name = words || ranks[i].is_host ? label : ranks[i].name;
@@ -133,7 +133,7 @@ Layer Names(const Kiviat& kiviat) {
 }  // namespace
 
 Scene KiviatView(const ViewInput& input) {
-  Scene scene{.name = "kiviat", .width = kSide, .height = kSide};
+  Scene scene{.name = "kiviat", .width = kWidth, .height = kHeight};
   std::size_t ranks_per_axis = 1;
   const RankTable all = RankTableOf(input, kMostPolygons);
   if (all.ranks.empty() || all.columns.empty()) return scene;

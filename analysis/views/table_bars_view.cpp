@@ -12,6 +12,7 @@
 #include "analysis/views/layout.h"
 #include "analysis/views/palette.h"
 #include "analysis/views/rank_table.h"
+#include "analysis/views/table_access.h"
 #include "analysis/views/table_reading.h"
 #include "analysis/views/text.h"
 #include "analysis/views/value_axis.h"
@@ -43,6 +44,9 @@ RankTable NamedRows(const ViewInput& input) {
   const TableColumns columns = ColumnsOf(table);
   result.tables = {table.name};
   std::vector<std::size_t> values = AlikeValues(table, columns, input.columns);
+  // Of times that hold one another the part that is a row's alone.
+  const std::optional<std::size_t> alone = ColumnNamed(table, "exclusive_s");
+  if (alone && input.columns.empty()) values = {*alone};
   if (input.columns.empty()) result.left_out = columns.values.size() - values.size();
   if (values.size() > kMostBars) {
     result.left_out += values.size() - kMostBars;
@@ -51,7 +55,7 @@ RankTable NamedRows(const ViewInput& input) {
   if (values.empty()) return result;
   std::vector<const std::vector<Cell>*> rows;
   for (const std::vector<Cell>& row : table.rows)
-    if (!(RowName(row, columns) == "total")) rows.push_back(&row);
+    if (!(RowName(table, row, columns) == "total")) rows.push_back(&row);
   const auto size = [&](const std::vector<Cell>* row) {
     const double value = NumberOr((*row)[values.front()]);
     return std::isnan(value) ? -std::numeric_limits<double>::infinity() : value;
@@ -60,13 +64,13 @@ RankTable NamedRows(const ViewInput& input) {
     std::ranges::stable_sort(rows, [&](auto* a, auto* b) { return size(a) > size(b); });
   const std::size_t shown = std::min(rows.size(), kMostNames);
   for (std::size_t i = 0; i < shown; ++i) {
-    std::string name = RowName(*rows[i], columns);
+    std::string name = RowName(table, *rows[i], columns);
     if (columns.rank) {
       const TimelineRow rank =
           RankNamed(input, NumberOr((*rows[i])[*columns.rank]) >= 0
                                ? fmt::format("{:.0f}", NumberOr((*rows[i])[*columns.rank]))
                                : "host");
-      name = name + " \u00b7 " + rank.name;
+      name = fmt::format("{}{} \u00b7 {}", rank.is_host ? "" : "rank ", rank.name, name);
     }
     result.ranks.push_back({ShortName(name), kNoRank, false, {}});
   }

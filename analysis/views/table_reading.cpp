@@ -14,9 +14,11 @@ namespace stipple {
 namespace {
 
 /// Numbers that name things.
-constexpr std::array<std::string_view, 10> kNames = {"tag",    "process", "thread", "channel",
-                                                     "waiter", "culprit", "line",   "phase",
-                                                     "sender", "receiver"};
+constexpr std::array<std::string_view, 9> kNames = {
+    "tag", "process", "thread", "channel", "waiter", "culprit", "phase", "sender", "receiver"};
+
+/// Where things stand in the source: neither names nor values.
+constexpr std::array<std::string_view, 2> kSource = {"file", "line"};
 
 bool HoldsText(const Table& table, std::size_t column) {
   for (const std::vector<Cell>& row : table.rows) {
@@ -53,6 +55,8 @@ TableColumns ColumnsOf(const Table& table) {
       columns.low = i;
     else if (name == "high" && columns.low)
       columns.high = i;
+    else if (std::ranges::find(kSource, name) != kSource.end())
+      continue;
     else if (std::ranges::find(kNames, name) != kNames.end() || HoldsText(table, i))
       columns.names.push_back(i);
     else
@@ -80,12 +84,15 @@ double NumberOr(const Cell& cell) {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-std::string RowName(const std::vector<Cell>& row, const TableColumns& columns) {
+std::string RowName(const Table& table, const std::vector<Cell>& row, const TableColumns& columns) {
   std::string text;
   for (const std::size_t column : columns.names) {
     if (column >= row.size()) continue;
     std::string part = CleanUtf8(CellText(row[column]));
     if (part.empty()) continue;
+    // A number alone would not say what it is of.
+    if (std::holds_alternative<std::int64_t>(row[column]) && columns.names.size() > 1)
+      part = table.columns[column].name + ' ' + part;
     if (!text.empty()) text += " \u00b7 ";
     text += part;
   }

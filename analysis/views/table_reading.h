@@ -39,7 +39,7 @@ std::vector<std::size_t> AlikeValues(const Table& table, const TableColumns& col
 double NumberOr(const Cell& cell);
 
 /// The names of a row in one text: "MPI_Recv", "3 · late-sender"; empty without any.
-std::string RowName(const std::vector<Cell>& row, const TableColumns& columns);
+std::string RowName(const Table& table, const std::vector<Cell>& row, const TableColumns& columns);
 
 /// The state that a column or a word names: "user_s", "idle", "message transmission".
 std::optional<State> StateOf(std::string_view word);

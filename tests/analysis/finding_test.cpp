@@ -99,8 +99,8 @@ TEST(Finding, SmallMessagesCost) {
   const Finding f = stipple::FindingOf(w.trace);
   EXPECT_EQ(f.cause, "message-overhead");
   EXPECT_EQ(f.sentence,
-            "The ranks spend 45% of the run on messages, most of it in MPI_Recv: they send 200 of "
-            "8 B");
+            "The ranks spend 45% of the run in MPI without waiting, most of it in MPI_Recv: they "
+            "send 200 messages of 8 B");
   // One message of 1600 bytes would do.
   EXPECT_NEAR(f.gain_s, 1800e-9 * 199 / 200, 1e-12);
   EXPECT_EQ(CostOfMessages(Analysis(w.trace), {}).packed, 1U);

@@ -20,7 +20,7 @@ has() { grep -qe "$2" "$1" || { fail "no '$2' in $1"; cat "$1"; }; }
 
 # Use.
 expect 0 help "$stipple" --help; has out "print an archive\|prove an archive"
-for command in flags run info check print stats view report compact exemplar; do expect 0 "$command --help" "$stipple" $command --help; done
+for command in flags run info check print stats plot view report compact exemplar; do expect 0 "$command --help" "$stipple" $command --help; done
 expect 2 "unknown command" "$stipple" nonsense; has err "known: flags run info"
 expect 2 "unknown option" "$stipple" info --nonsense x; has err "known: --json"
 expect 2 "missing archive" "$stipple" info none.stipple; has err "none.stipple"

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 // bench_reader --write EVENTS PATH writes an archive and no more.
-// bench_reader [EVENTS] [DIRECTORY]: writes an archive of one rank with EVENTS function events
-// (default 1e8, 800 MB), then measures CPU time per event of the profile and states tables and of
-// both together, in alternating runs, against the floor: summing the mapped words.
+// bench_reader [EVENTS] [DIRECTORY] [RECORDED]: writes an archive of one rank with EVENTS function
+// events (default 1e8, 800 MB), then measures CPU time per event of the profile and states tables
+// and of both together, in alternating runs, against the floor: summing the mapped words.
+//
+// The events are a random walk: enter or leave, and of what, is a matter of chance, which is the
+// worst that a reader can meet. With RECORDED, an archive of a real program, they are the events of
+// its largest thread, again and again: the order of calls that a program has.
 #include <time.h>
 
 #include <algorithm>
@@ -29,6 +33,7 @@ namespace {
 constexpr std::uint32_t kChunkBytes = 64 * kGranuleBytes;
 constexpr std::uint32_t kRegions = 200;
 constexpr int kRuns = 7;
+constexpr std::uint64_t kFirstTicks = 2000;
 
 double CpuSeconds() {
   timespec t{};
@@ -56,33 +61,53 @@ void AddDefinition(std::vector<std::uint64_t>& words, Record record, std::string
               text.size());
 }
 
-/// A walk through a call tree up to 30 deep, as a program makes it: the next event is an enter or a
-/// leave at random, regions are unevenly frequent.
-void WriteArchive(const std::string& path, std::uint64_t events) {
-  std::filesystem::create_directories(path);
-  std::ofstream file(path + "/bench.1.1.stream", std::ios::binary);
-  FileHeader header{};
-  header.magic = kFileMagic;
-  header.version = header.minimum_reader_version = kFormatVersion;
-  header.pid = 1;
-  header.clock = ClockKind::kTsc;
-  header.start_ticks = 1000;
-  header.start_raw_ns = 500;
-  std::string first(kGranuleBytes, '\0');
-  std::memcpy(first.data(), &header, sizeof(header));
-  file.write(first.data(), kGranuleBytes);
-  std::vector<std::uint64_t> words(sizeof(ChunkHeader) / 8);
-  for (std::uint32_t r = 1; r <= kRegions; ++r) {
-    const std::string name = "function" + std::to_string(r);
-    AddDefinition(
-        words,
-        DefineRegion{0, r, RegionKind::kFunction, r, static_cast<std::uint32_t>(name.size()), 3, 0},
-        name + "a.c");
+/// Writes the stream of one thread, in time order.
+class StreamWriter {
+ public:
+  StreamWriter(const std::string& path, const std::vector<RegionKind>& regions) {
+    std::filesystem::create_directories(path);
+    file_.open(path + "/bench.1.1.stream", std::ios::binary);
+    FileHeader header{};
+    header.magic = kFileMagic;
+    header.version = header.minimum_reader_version = kFormatVersion;
+    header.pid = 1;
+    header.clock = ClockKind::kTsc;
+    header.start_ticks = 1000;
+    header.start_raw_ns = 500;
+    std::string first(kGranuleBytes, '\0');
+    std::memcpy(first.data(), &header, sizeof(header));
+    file_.write(first.data(), kGranuleBytes);
+    for (std::uint32_t r = 1; r < regions.size(); ++r) {
+      const std::string name = "function" + std::to_string(r);
+      AddDefinition(
+          words_, DefineRegion{0, r, regions[r], r, static_cast<std::uint32_t>(name.size()), 3, 0},
+          name + "a.c");
+    }
+    WriteChunk(file_, ChunkKind::kDefinitions, 0, 1000, words_);
   }
-  WriteChunk(file, ChunkKind::kDefinitions, 0, 1000, words);
-  std::uint64_t ticks = 2000;
-  std::uint64_t chunk_ticks = ticks;
-  std::uint64_t sequence = 0;
+  ~StreamWriter() { WriteChunk(file_, ChunkKind::kEvents, sequence_, chunk_ticks_, words_); }
+  StreamWriter(const StreamWriter&) = delete;
+  StreamWriter& operator=(const StreamWriter&) = delete;
+
+  void Event(std::uint64_t ticks, bool leave, std::uint32_t region) {
+    words_.push_back(MakeEvent(ticks, leave, RegionId{region}));
+    if (words_.size() != kChunkBytes / 8) return;
+    WriteChunk(file_, ChunkKind::kEvents, sequence_++, chunk_ticks_, words_);
+    chunk_ticks_ = ticks;
+  }
+
+ private:
+  std::ofstream file_;
+  std::vector<std::uint64_t> words_ = std::vector<std::uint64_t>(sizeof(ChunkHeader) / 8);
+  std::uint64_t sequence_ = 0;
+  std::uint64_t chunk_ticks_ = kFirstTicks;
+};
+
+/// A walk through a call tree up to 30 deep: the next event is an enter or a leave at random,
+/// regions are unevenly frequent.
+void WriteWalk(const std::string& path, std::uint64_t events) {
+  StreamWriter writer(path, std::vector<RegionKind>(kRegions + 1, RegionKind::kFunction));
+  std::uint64_t ticks = kFirstTicks;
   std::uint64_t random = 88172645463325252;
   std::vector<std::uint32_t> stack;
   for (std::uint64_t i = 0; i < events; ++i) {
@@ -96,14 +121,59 @@ void WriteArchive(const std::string& path, std::uint64_t events) {
       const auto b = static_cast<std::uint32_t>((random >> 40) % kRegions);
       stack.push_back(1 + std::min(a, b));
     }
-    words.push_back(MakeEvent(ticks, leave, RegionId{stack.back()}));
+    writer.Event(ticks, leave, stack.back());
     if (leave) stack.pop_back();
-    if (words.size() == kChunkBytes / 8) {
-      WriteChunk(file, ChunkKind::kEvents, sequence++, chunk_ticks, words);
-      chunk_ticks = ticks;
-    }
   }
-  WriteChunk(file, ChunkKind::kEvents, sequence, chunk_ticks, words);
+}
+
+/// Keeps the function events of a thread that have their place: each leave is that of the innermost
+/// open function.
+struct Recording {
+  struct Entry {
+    std::uint64_t ticks;
+    std::uint32_t region;
+    bool leave;
+  };
+  std::vector<Entry> events;
+  std::vector<std::uint32_t> open;
+  void Function(std::uint32_t region, bool leave, std::uint64_t ticks) {
+    if (leave && (open.empty() || open.back() != region)) return;
+    if (leave)
+      open.pop_back();
+    else
+      open.push_back(region);
+    events.push_back({ticks, region, leave});
+  }
+  void Record(const EventWord*, std::uint64_t) {}
+  void Close() {
+    while (!open.empty()) Function(open.back(), true, events.back().ticks + 100);
+  }
+};
+
+/// Events of the largest thread of a recorded archive, over and over.
+void WriteRecorded(const std::string& path, std::uint64_t events, const std::string& recorded) {
+  const Trace trace = Trace::Open(recorded);
+  const auto largest = std::ranges::max_element(
+      trace.locations(), {}, [](const Location& l) { return l.stream->Bytes(); });
+  Recording recording;
+  if (largest != trace.locations().end()) trace.Scan(*largest, recording);
+  if (recording.events.empty()) {
+    std::fprintf(stderr, "%s: holds no events\n", recorded.c_str());
+    std::exit(2);
+  }
+  recording.Close();
+  std::vector<RegionKind> kinds;
+  for (const std::uint32_t region : trace.ProcessOf(*largest).regions)
+    kinds.push_back(trace.regions()[region].kind);
+  StreamWriter writer(path, kinds);
+  const std::uint64_t first = recording.events.front().ticks;
+  const std::uint64_t span = recording.events.back().ticks - first + 100;
+  std::uint64_t begin = kFirstTicks;
+  for (std::uint64_t i = 0; i < events; ++i) {
+    const auto& [ticks, region, leave] = recording.events[i % recording.events.size()];
+    writer.Event(begin + ticks - first, leave, region);
+    if ((i + 1) % recording.events.size() == 0) begin += span;
+  }
 }
 
 std::uint64_t checksum = 0;  // keeps the work from being optimised away
@@ -120,9 +190,12 @@ struct Task {
   std::vector<double> seconds;
 };
 
-int Main(std::uint64_t events, const std::string& directory) {
+int Main(std::uint64_t events, const std::string& directory, const std::string& recorded) {
   const std::string path = directory + "/bench_reader.stipple";
-  WriteArchive(path, events);
+  if (recorded.empty())
+    WriteWalk(path, events);
+  else
+    WriteRecorded(path, events, recorded);
   const auto profile = [](const Analysis& a) {
     checksum += ProfileTable(a, {}, false).rows.size();
   };
@@ -175,11 +248,11 @@ int Main(std::uint64_t events, const std::string& directory) {
 int main(int argc, char** argv) {
   // --write EVENTS PATH: only the archive, for other benchmarks.
   if (argc == 4 && std::strcmp(argv[1], "--write") == 0) {
-    stipple::WriteArchive(argv[3], static_cast<std::uint64_t>(std::atof(argv[2])));
+    stipple::WriteWalk(argv[3], static_cast<std::uint64_t>(std::atof(argv[2])));
     return 0;
   }
   const double events = argc > 1 ? std::atof(argv[1]) : 1e8;
   const std::string directory =
       argc > 2 ? argv[2] : std::filesystem::temp_directory_path().string();
-  return stipple::Main(static_cast<std::uint64_t>(events), directory);
+  return stipple::Main(static_cast<std::uint64_t>(events), directory, argc > 3 ? argv[3] : "");
 }

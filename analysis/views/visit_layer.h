@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// Functions as bars below each rank's state row: one line for each depth of the call stack.
+#ifndef STIPPLE_ANALYSIS_VIEWS_VISIT_LAYER_H
+#define STIPPLE_ANALYSIS_VIEWS_VISIT_LAYER_H
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "analysis/views/axis.h"
+#include "analysis/views/row_grid.h"
+#include "analysis/views/scene.h"
+#include "analysis/views/view_list.h"
+
+namespace stipple {
+
+inline constexpr double kVisitLine = 15;  // pixels of one depth
+
+/// Depths that are drawn. Those that show the same function from end to end on every rank are left
+/// out, but for the innermost of them.
+struct VisitDepths {
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;  // 0: no visits are drawn
+  double Height() const { return count * kVisitLine; }
+};
+
+/// None where there are no visits or too many rows for them.
+VisitDepths VisitDepthsOf(const ViewInput& input);
+
+/// Bars of one row that begins at `y`, and their names where they fit.
+void AddVisits(const VisitBars& visits, std::size_t row, const VisitDepths& depths,
+               const TimeAxis& axis, double y, Layer& bars, Layer& names);
+
+/// Quiet, dark text is legible on all; a name has the same colour in every picture.
+Colour ColourOfName(std::string_view name);
+
+}  // namespace stipple
+
+#endif
