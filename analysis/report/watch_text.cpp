@@ -279,7 +279,7 @@ std::string FirstLine(const WatchReading& reading) {
 WatchReading::WatchReading(const Analysis& of, std::int64_t last_ns, const WatchBefore& before)
     : analysis(of), window_ns(last_ns), events(of.trace.EventCount()) {
   const Selection all;
-  finding = FindingOf(of, all, BlameOf(of.trace, of.mpi, of.waits, all));
+  finding = FindingOf(of, all, BlameOf(of, all));
   const std::int64_t span_ns = of.trace.SpanNs();
   if (events >= before.events && span_ns > before.span_ns)
     per_s = static_cast<double>(events - before.events) / Seconds(span_ns - before.span_ns);

@@ -5,67 +5,47 @@
 #include <utility>
 
 #include "analysis/stats/causes.h"
-#include "analysis/stats/estimate.h"
-#include "analysis/stats/profile.h"
-#include "analysis/stats/profile_visitor.h"
+#include "analysis/stats/location_scan.h"
 #include "analysis/stats/store.h"
 
 namespace stipple {
 
 Analysis::Analysis(const Trace& of) : trace(of) {
   if (LoadAnalysis(*this)) return;
-  ScanAll();
+  std::vector<LocationScan> scans(trace.locations().size());
+  trace.ForEachLocation("reading",
+                        [&](const Location& l) { scans[l.index] = ScanLocation(trace, l); });
+  Join(std::move(scans));
   SaveAnalysis(*this);
 }
 
-void Analysis::ScanAll() {
-  profiles.assign(trace.locations().size(), {});
+Analysis::Analysis(const Trace& of, std::vector<LocationScan> scans) : trace(of) {
+  Join(std::move(scans));
+  SaveAnalysis(*this);
+}
+
+/// What needs all locations.
+void Analysis::Join(std::vector<LocationScan> scans) {
+  std::vector<LocationActivity> activities;
+  profiles.clear();
   steps.clear();
   kernel.clear();
-  std::vector<LocationActivity> activities(profiles.size());
-  std::vector<std::vector<BudgetStep>> steps_of(profiles.size());
-  std::vector<std::uint64_t> leaves_without_enter(profiles.size());
-  std::vector<std::uint64_t> enters_without_leave(profiles.size());
-  trace.ForEachLocation("reading", [&](const Location& l) {
-    const Process& process = trace.ProcessOf(l);
-    MpiCollector collector(trace, l);
-    const auto keep_unmatched = [&](const auto& visitor) {
-      enters_without_leave[l.index] = visitor.enters_without_leave();
-      // A forked child leaves the functions that its parent had entered.
-      if (process.stream->header.forked == 0)
-        leaves_without_enter[l.index] = visitor.leaves_without_enter();
-    };
-    if (HasBudget(process)) {
-      EstimateVisitor visitor(process.RegionCount(), l.first_ticks, kNoTickLimit,
-                              EventPrices::Of(*process.stream), false, &collector);
-      trace.Scan(l, visitor);
-      visitor.Finish(l.last_ticks, process.stream->visit_counts, l.stream->thread);
-      LocationEstimate estimate = EstimateFrom(trace, l, visitor);
-      profiles[l.index] = std::move(estimate.profile);
-      steps_of[l.index] = std::move(estimate.steps);
-      keep_unmatched(visitor);
-    } else {
-      ProfileVisitor visitor(process.RegionCount(), trace.kept() ? l.first_ticks : 0, kNoTickLimit,
-                             &collector);
-      trace.Scan(l, visitor);
-      visitor.Finish(l.last_ticks);
-      profiles[l.index] = ProfileFrom(trace, l, visitor);
-      keep_unmatched(visitor);
-    }
-    activities[l.index] = collector.Finish();
-  });
-  for (const std::vector<BudgetStep>& some : steps_of)
-    steps.insert(steps.end(), some.begin(), some.end());
+  for (LocationScan& s : scans) {
+    profiles.push_back(std::move(s.profile));
+    steps.insert(steps.end(), s.steps.begin(), s.steps.end());
+    kernel.emplace_back(std::move(s.activity.system_calls));
+    activities.push_back(std::move(s.activity));
+  }
   std::ranges::stable_sort(steps, {}, &BudgetStep::time_ns);
-  for (LocationActivity& a : activities) kernel.emplace_back(std::move(a.system_calls));
   mpi = JoinActivity(trace, std::move(activities));
   waits = FindWaits(trace, mpi);
   kernel = KernelTimeOf(trace, std::move(kernel), mpi.calls);
+  sums = SumTimes(*this);
   health = trace.Health();
   for (const Location& l : trace.locations()) {
     const std::string& where = trace.ProcessOf(l).where;
-    health.Add(Defect::kLeaveWithoutEnter, where, leaves_without_enter[l.index]);
-    health.Add(Defect::kEnterWithoutLeave, where, enters_without_leave[l.index]);
+    health.Add(Defect::kLeaveWithoutEnter, where, scans[l.index].leaves_without_enter);
+    health.Add(Defect::kEnterWithoutLeave, where, scans[l.index].enters_without_leave);
   }
   health.Add(mpi.health);
   health.ForgiveUnfinished();

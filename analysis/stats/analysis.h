@@ -15,6 +15,7 @@
 #include "analysis/stats/kernel_time.h"
 #include "analysis/stats/phases.h"
 #include "analysis/stats/selection.h"
+#include "analysis/stats/time_sums.h"
 #include "analysis/stats/waits.h"
 #include "analysis/trace/health.h"
 #include "analysis/trace/mpi_activity.h"
@@ -74,8 +75,12 @@ struct BudgetStep {
   double mean_ns = 0;
 };
 
+struct LocationScan;
+
 struct Analysis {
   explicit Analysis(const Trace& of);
+  /// From the scans of all locations, wherever they were made.
+  Analysis(const Trace& of, std::vector<LocationScan> scans);
 
   const Trace& trace;
   std::vector<LocationProfile> profiles;  // by location, of the whole time
@@ -83,6 +88,7 @@ struct Analysis {
   Array<CallWait> waits;          // by call of mpi
   std::vector<BudgetStep> steps;  // in order of time
   KernelTime kernel;              // by location
+  TimeSums sums;                  // for pictures of any span
   TraceHealth health;             // all that is wrong with the archive
   // What not everyone asks for: made when it is, and then kept in the index as well.
   // Of the whole run; ask CausesOf.
@@ -93,7 +99,7 @@ struct Analysis {
   mutable std::optional<std::vector<SplitPart>> split;
 
  private:
-  void ScanAll();
+  void Join(std::vector<LocationScan> scans);
 };
 
 /// Those of the whole run are made once.

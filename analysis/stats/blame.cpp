@@ -21,8 +21,9 @@ constexpr std::size_t kShortWalk = 16;
 // Waits with less than this share of either between them are one.
 constexpr double kNoWork = 0.1;
 // Turns are taken by as many ranks as this, counted as the inverse of the sum of squared shares: 3
-// when three ranks have a third each.
-constexpr double kLeastTurns = 2.5;
+// when three ranks have a third each; 2.4 when the third of four has little left of its turn, since
+// the waiter had work of its own.
+constexpr double kLeastTurns = 2.2;
 // Of few ranks: by this share of the others.
 constexpr double kMostOthers = 0.9;
 // So many of the ranks wait while turns are handed on: half, were a pipeline's filling all of it.

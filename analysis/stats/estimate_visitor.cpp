@@ -38,6 +38,13 @@ EstimateVisitor::EstimateVisitor(std::uint32_t region_count, std::uint64_t begin
           0,    prices.timed,    prices.timed_inner};
 }
 
+std::vector<OpenVisit> EstimateVisitor::OpenVisits() const {
+  std::vector<OpenVisit> open;
+  for (const Frame* f = stack_.data(); f++ != hot_.top;)
+    open.push_back({f->enter, IndexOf(f->region)});
+  return open;
+}
+
 void EstimateVisitor::Finish(std::uint64_t ticks, std::span<const VisitCount> counts,
                              std::uint32_t thread) {
   hot_.Charge(std::max(hot_.last, ticks));

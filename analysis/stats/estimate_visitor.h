@@ -15,6 +15,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "analysis/trace/anchors.h"
 #include "analysis/trace/jump_points.h"
 #include "analysis/trace/mpi_collector.h"
 #include "analysis/trace/scan.h"
@@ -173,6 +174,10 @@ class EstimateVisitor {
   void End(const Hot& hot) { hot_ = hot; }
   /// Ends the frames that are still open. `counts`: visits without events since the last samples.
   void Finish(std::uint64_t ticks, std::span<const VisitCount> counts, std::uint32_t thread);
+
+  /// Visits that are open, outermost first, between the chunks of a scan; see ProfileVisitor.
+  std::vector<OpenVisit> OpenVisits() const;
+  bool IsPlain() const { return points_.IsPlain(); }
 
   /// By region of the process; the last is what no region had.
   std::span<const RegionTally> regions() const { return regions_; }

@@ -123,7 +123,8 @@ Table WaitMatrix(const Analysis& analysis, const Selection& selection) {
   const Places places(analysis.trace, selection);
   std::vector<double> seconds(places.count() * places.count());
   for (const Blame& b : SelectedBlame(analysis, selection))
-    if (const auto at = places.At(b.waiter, b.culprit)) seconds[*at] += b.seconds;
+    if (const auto at = places.At(b.waiter, b.culprit); at && b.kind != WaitKind::kMessageOverhead)
+      seconds[*at] += b.seconds;
   return places.TableOf("wait", "waiter", [&](std::size_t at) { return seconds[at]; });
 }
 

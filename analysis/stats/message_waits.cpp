@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <span>
+#include <utility>
 
 namespace stipple {
 namespace {
@@ -60,7 +60,11 @@ std::vector<CallWait> WaitsOfMessages(const Analysis& analysis, const Selection&
 
 std::vector<Blame> SelectedBlame(const Analysis& analysis, const Selection& selection) {
   if (selection.AllMessages()) return BlameOf(analysis, selection);
-  return BlameOf(analysis.trace, analysis.mpi, WaitsOfMessages(analysis, selection), selection);
+  std::vector<Blame> blames =
+      BlameOf(analysis.trace, analysis.mpi, WaitsOfMessages(analysis, selection), selection);
+  // Time in calls is no wait, and is not told by message.
+  std::erase_if(blames, [](const Blame& b) { return b.kind == WaitKind::kMessageOverhead; });
+  return blames;
 }
 
 }  // namespace stipple

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/stats/analysis.h"
+#include "analysis/stats/blame.h"
 #include "analysis/stats/selection.h"
 #include "analysis/stats/waits.h"
 

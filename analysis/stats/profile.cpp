@@ -73,7 +73,10 @@ LocationProfile ProfileOf(const Trace& trace, const Location& location,
                                : std::max(trace.TicksAt(location, selection.begin_ns),
                                           trace.kept() ? location.first_ticks : 0),
                          whole ? kNoTickLimit : trace.TicksAt(location, selection.end_ns), nullptr);
-  trace.Scan(location, visitor);
+  if (whole)
+    trace.Scan(location, visitor);
+  else
+    trace.ScanSpan(location, visitor.begin(), visitor.end(), visitor);
   visitor.Finish(location.last_ticks);
   return ProfileFrom(trace, location, visitor);
 }

@@ -6,12 +6,6 @@
 
 namespace stipple {
 
-std::vector<std::uint32_t> ProfileVisitor::OpenStack() const {
-  std::vector<std::uint32_t> open;
-  for (const RegionTicks* const* f = stack_.data(); f++ != hot_.top;) open.push_back(NumberOf(*f));
-  return open;
-}
-
 /// Room for so many frames more.
 void ProfileVisitor::Reserve(Hot& hot, std::size_t frames) {
   while (static_cast<std::size_t>(hot.limit - hot.top) < frames) {
@@ -32,7 +26,7 @@ std::size_t ProfileVisitor::Block(Hot& hot, const EventWord* words, std::size_t 
     return 0;
   Reserve(hot, count);
   RegionTicks* const regions = hot.regions;
-  RegionTicks** top = hot.top;
+  Frame* top = hot.top;
   std::uint64_t last = hot.last;
   std::size_t i = 0;
   for (; i < count; ++i) {
@@ -40,13 +34,13 @@ std::size_t ProfileVisitor::Block(Hot& hot, const EventWord* words, std::size_t 
     const std::uint64_t now = TimeOf(word) + offset;
     const std::uint64_t leave = (word / kLeaveBit) & 1;
     RegionTicks* const region = regions + (word & kRegionMask);
-    RegionTicks** const place = top + 1 - leave;
-    if (((static_cast<std::uint64_t>(*place != region) & leave) | region->is_watched) != 0)
+    Frame* const place = top + 1 - leave;
+    if (((static_cast<std::uint64_t>(place->region != region) & leave) | region->is_watched) != 0)
         [[unlikely]]
       break;
-    (*top)->exclusive += now - last;
+    top->region->exclusive += now - last;
     last = now;
-    *place = region;
+    *place = {region, now};
     top = place - leave;
     region->Count(leave, now);
   }
@@ -55,16 +49,32 @@ std::size_t ProfileVisitor::Block(Hot& hot, const EventWord* words, std::size_t 
   return i;
 }
 
+std::vector<OpenVisit> ProfileVisitor::OpenVisits() const {
+  std::vector<OpenVisit> open;
+  for (const Frame* f = stack_.data(); f++ != hot_.top;)
+    open.push_back({f->enter, NumberOf(f->region)});
+  return open;
+}
+
+void ProfileVisitor::Open(std::span<const OpenVisit> visits) {
+  for (const OpenVisit& v : visits) {
+    RegionTicks* const region = &regions_[v.region + 1 < regions_.size() ? v.region : 0];
+    ++region->entered_before;
+    hot_.Push(region, hot_.last);
+  }
+}
+
 /// Ends the frame on top, which has no leave of its own.
 void ProfileVisitor::PopLeft(Hot& hot, std::uint64_t ticks) {
-  if ((*hot.top)->is_watched != 0) collector_->Function(NumberOf(*hot.top), true, ticks);
+  if (hot.top->region->is_watched != 0)
+    collector_->Function(NumberOf(hot.top->region), true, ticks);
   hot.Pop(hot.last);
 }
 
 /// Ends the frames above the innermost one of `region`.
 ProfileVisitor::Hot ProfileVisitor::Repair(Hot hot, const RegionTicks* region,
                                            std::uint64_t ticks) {
-  for (; *hot.top != region; ++enters_without_leave_) PopLeft(hot, ticks);
+  for (; hot.top->region != region; ++enters_without_leave_) PopLeft(hot, ticks);
   return hot;
 }
 
@@ -80,10 +90,10 @@ void ProfileVisitor::Guess(const Hot& hot, const EventWord* first, const Unclock
   ++runs_;
   guessed_stack_.clear();
   guessed_regions_.clear();
-  const RegionTicks* const* below = hot.top;
+  const Frame* below = hot.top;
   std::uint64_t begin = run.begin;
   for (std::uint64_t gap = 0; gap <= run.events; ++gap) {
-    const std::uint32_t region = guessed_stack_.empty() ? NumberOf(*below) : guessed_stack_.back();
+    const std::uint32_t region = guessed_stack_.empty() ? NumberOf(below->region) : guessed_stack_.back();
     RegionSlack& slack = slacks_[region];
     if (std::exchange(slack.run, runs_) != runs_) {
       slack.in_run = 0;
@@ -144,7 +154,7 @@ void ProfileVisitor::BeginOpen(Hot& hot, const EventWord* record, std::uint64_t 
 void ProfileVisitor::SwitchContext(Hot& hot, std::uint32_t from, std::uint32_t to) {
   if (hot.top != stack_.data()) {
     std::vector<RegionTicks*>& frames = waiting_[from];
-    frames.insert(frames.end(), stack_.data() + 1, hot.top + 1);
+    for (const Frame* f = stack_.data(); f++ != hot.top;) frames.push_back(f->region);
     while (hot.top != stack_.data()) hot.Pop(hot.last);
   }
   const auto frames = waiting_.extract(to);

@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "analysis/trace/anchors.h"
 #include "analysis/trace/jump_points.h"
 #include "analysis/trace/mpi_collector.h"
 #include "analysis/trace/scan.h"
@@ -44,6 +45,12 @@ struct RegionSlack {
   std::uint64_t in_run = 0;    // of that run
 };
 
+/// A visit that is open.
+struct Frame {
+  RegionTicks* region;
+  std::uint64_t enter;
+};
+
 /// Charges the time between two events to the region on top of the stack. Ticks are clamped into
 /// the selected span, so time outside it is nobody's. A region's inclusive time is the sum of the
 /// times at which its outermost visits end less those at which they begin. Below the outermost
@@ -55,8 +62,8 @@ class ProfileVisitor {
   struct Hot {
     ProfileVisitor* owner;
     RegionTicks* regions;
-    RegionTicks** top;
-    RegionTicks** limit;
+    Frame* top;
+    Frame* limit;
     std::uint64_t begin;
     std::uint64_t end;
     std::uint64_t last;
@@ -70,7 +77,7 @@ class ProfileVisitor {
       if (!leave) {
         r->entered_before += static_cast<std::uint64_t>(now != ticks);
         Push(r, now);
-      } else if (*top == r) [[likely]] {
+      } else if (top->region == r) [[likely]] {
         Pop(now);
       } else if (r->Open() != 0) {
         *this = owner->Repair(*this, r, ticks);
@@ -89,7 +96,7 @@ class ProfileVisitor {
     }
 
     void Charge(std::uint64_t now) {
-      (*top)->exclusive += now - last;
+      top->region->exclusive += now - last;
       last = now;
     }
     void Push(RegionTicks* region, std::uint64_t now) {
@@ -98,9 +105,9 @@ class ProfileVisitor {
         top = owner->Grow();
         limit = owner->Limit();
       }
-      *++top = region;
+      *++top = {region, now};
     }
-    void Pop(std::uint64_t now) { (*top--)->Count(1, now); }
+    void Pop(std::uint64_t now) { (top--)->region->Count(1, now); }
   };
 
   /// Events of MPI functions and records go to `collector`, if there is one, at the same time.
@@ -109,7 +116,7 @@ class ProfileVisitor {
       : regions_(region_count + 1), stack_(1024), collector_(collector) {
     for (std::uint32_t r = 0; collector != nullptr && r < region_count; ++r)
       regions_[r].is_watched = collector->Wants(r) ? 1 : 0;
-    stack_.front() = &regions_.back();
+    stack_.front() = {&regions_.back(), 0};
     hot_ = {this, regions_.data(), stack_.data(), Limit(), begin, end, begin};
   }
   ProfileVisitor(const ProfileVisitor&) = delete;
@@ -127,11 +134,18 @@ class ProfileVisitor {
   /// For an index of the events, between the parts of a scan (Trace::ScanParts; costs nothing
   /// else):
   ///   trace.ScanParts(location, visitor, 64 * 1024, [&](const ScanPosition& at) {
-  ///     index.push_back({at.Place(), visitor.OpenStack(), visitor.IsPlain()});
+  ///     index.push_back({at.Place(), visitor.OpenVisits(), visitor.IsPlain()});
   ///   });
-  /// The next events of at.Place() are met at at.now or later with these regions open, outermost
-  /// first, by the process's numbers. Those of contexts that wait are not among them.
-  std::vector<std::uint32_t> OpenStack() const;
+  /// The next events of at.Place() are met at at.now or later with these visits open, outermost
+  /// first. Those of contexts that wait are not among them.
+  std::vector<OpenVisit> OpenVisits() const;
+  /// Begins with these.
+  void Open(std::span<const OpenVisit> visits);
+  /// Ticks of the selected span.
+  std::uint64_t begin() const { return hot_.begin; }
+  std::uint64_t end() const { return hot_.end; }
+  /// It wants to see all there is.
+  static constexpr bool Done() { return false; }
   /// Whether these regions are all that the events to come depend on: no jump point and no other
   /// context has been seen. Else a scan that begins at the place may see a jump that it cannot
   /// follow, and must begin further in front.
@@ -164,16 +178,16 @@ class ProfileVisitor {
   void PopLeft(Hot& hot, std::uint64_t ticks);
   std::size_t Block(Hot& hot, const EventWord* words, std::size_t count, std::uint64_t offset);
   void Reserve(Hot& hot, std::size_t frames);
-  RegionTicks** Limit() { return stack_.data() + stack_.size() - 1; }
+  Frame* Limit() { return stack_.data() + stack_.size() - 1; }
   /// Doubles a full stack; returns its top.
-  RegionTicks** Grow() {
+  Frame* Grow() {
     const std::size_t used = stack_.size();
     stack_.resize(2 * used);
     return stack_.data() + used - 1;
   }
 
   std::vector<RegionTicks> regions_;
-  std::vector<RegionTicks*> stack_;
+  std::vector<Frame> stack_;
   std::vector<RegionSlack> slacks_;
   std::uint64_t runs_ = 0;
   std::vector<std::uint32_t> guessed_stack_;  // of Guess: what it enters

@@ -65,6 +65,7 @@ class RegionTimesVisitor {
   }
 
  private:
+  static constexpr std::size_t kMostOpen = 64;  // deeper ones are not counted
   static constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
@@ -115,6 +116,17 @@ class RegionTimesVisitor {
     }
   }
 
+  /// Visits that are open when a span begins belong to it, too.
+  void CountOpen(std::vector<Sum>& sums) {
+    const std::span<const std::uint32_t> frames = stack_.frames();
+    const std::size_t count = std::min(frames.size(), kMostOpen);
+    for (const std::uint32_t region : frames.last(count)) {
+      const std::uint32_t index = IndexOf(region);
+      if (index >= sums.size()) sums.resize(index + 1);
+      ++sums[index].calls;
+    }
+  }
+
   void Pass(std::uint64_t now) {
     while (next_ < edges_.size() && edges_[next_].ticks <= now) {
       const Edge& edge = edges_[next_++];
@@ -127,6 +139,7 @@ class RegionTimesVisitor {
         sums[i].as_caller += edge.end ? s.as_caller : -s.as_caller;
         sums[i].calls += edge.end ? s.calls : -s.calls;
       }
+      if (!edge.end) CountOpen(sums);
     }
     next_ticks_ = next_ < edges_.size() ? edges_[next_].ticks : kNever;
   }

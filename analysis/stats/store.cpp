@@ -35,6 +35,11 @@ void ForEachPart(SomeAnalysis& a, Part&& part) {
   part("waits", a.waits);
   part("steps", a.steps);
   part("kernel", a.kernel);
+  part("sums.calls", a.sums.calls);
+  part("sums.kernel", a.sums.kernel);
+  part("sums.messages", a.sums.messages);
+  part("sums.completions", a.sums.completions);
+  part("sums.latest", a.sums.latest);
   part("health", a.health);
   part("blames", a.blames);
   part("path", a.path);

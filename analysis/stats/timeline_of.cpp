@@ -4,87 +4,72 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <vector>
 
 namespace stipple {
 namespace {
 
 constexpr std::size_t kMostMarks = 2000;
 
-/// Adds the share that [begin, end) takes of each column.
-class Columns {
- public:
-  Columns(double begin_s, double end_s, std::size_t count)
-      : begin_s_(begin_s),
-        width_s_((end_s - begin_s) / static_cast<double>(count)),
-        count_(count) {}
-
-  void Add(std::vector<StateShares>& columns, double begin_s, double end_s, State state,
-           double sign = 1) const {
-    const double last = static_cast<double>(count_);
-    const double from = std::clamp((begin_s - begin_s_) / width_s_, 0.0, last);
-    const double to = std::clamp((end_s - begin_s_) / width_s_, 0.0, last);
-    for (auto c = static_cast<std::size_t>(from); c < count_ && static_cast<double>(c) < to; ++c) {
-      const double left = std::max(from, static_cast<double>(c));
-      const double right = std::min(to, static_cast<double>(c + 1));
-      columns[c][static_cast<std::size_t>(state)] += static_cast<float>(sign * (right - left));
-    }
-  }
-
- private:
-  double begin_s_;
-  double width_s_;
-  std::size_t count_;
-};
-
 double Seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
-/// Rows of all ranks, filled with user time; `row_of_rank` tells where they are.
-void AddRows(const Trace& trace, const Columns& columns, std::size_t count, Timeline& timeline,
-             std::map<int, std::size_t>& row_of_rank) {
-  for (const int rank : trace.RanksInOrder()) {
-    const Location& l = *trace.MainOf(rank);
-    row_of_rank[rank] = timeline.rows.size();
-    timeline.rows.push_back({trace.RankName(rank), rank, trace.IsHost(rank), {}});
-    timeline.rows.back().columns.resize(count);
-    columns.Add(timeline.rows.back().columns, Seconds(l.begin_ns), Seconds(l.end_ns), State::kUser);
+/// Bounds of the columns in nanoseconds.
+std::vector<double> BoundsOf(const Timeline& timeline, std::size_t columns) {
+  std::vector<double> bounds;
+  const double begin_ns = timeline.begin_s * 1e9;
+  const double width_ns = (timeline.end_s - timeline.begin_s) * 1e9 / static_cast<double>(columns);
+  for (std::size_t c = 0; c <= columns; ++c)
+    bounds.push_back(begin_ns + width_ns * static_cast<double>(c));
+  return bounds;
+}
+
+TimelineRow RowOfRank(const Analysis& analysis, int rank, const std::vector<double>& bounds) {
+  const Trace& trace = analysis.trace;
+  TimelineRow row{trace.RankName(rank), rank, trace.IsHost(rank), {}};
+  StateClock clock(analysis, *trace.MainOf(rank));
+  StateTimes before = clock.Before(bounds.front());
+  for (std::size_t c = 0; c + 1 < bounds.size(); ++c) {
+    const StateTimes now = clock.Before(bounds[c + 1]);
+    const double width = bounds[c + 1] - bounds[c];
+    const auto share = [width](double from, double to) {
+      return static_cast<float>(width > 0 ? std::clamp((to - from) / width, 0.0, 1.0) : 0.0);
+    };
+    StateShares& shares = row.columns.emplace_back();
+    shares[static_cast<std::size_t>(State::kUser)] = share(before.user, now.user);
+    shares[static_cast<std::size_t>(State::kSystem)] = share(before.system, now.system);
+    shares[static_cast<std::size_t>(State::kMessage)] = share(before.message, now.message);
+    shares[static_cast<std::size_t>(State::kIdle)] = share(before.idle, now.idle);
+    before = now;
+  }
+  return row;
+}
+
+void AddSentBytes(const Analysis& analysis, const std::vector<double>& bounds, Timeline& timeline) {
+  std::uint64_t before = BytesOfFirst(analysis, SentBefore(analysis.sums, bounds.front()));
+  for (std::size_t c = 1; c < bounds.size(); ++c) {
+    // What is sent at the very end belongs to the last column.
+    const bool last = c + 1 == bounds.size();
+    const double until = last ? std::nextafter(bounds[c], HUGE_VAL) : bounds[c];
+    const std::uint64_t now = BytesOfFirst(analysis, SentBefore(analysis.sums, until));
+    timeline.sent_bytes.push_back(static_cast<double>(now - before));
+    before = now;
   }
 }
 
-void AddKernelTime(const Analysis& analysis, const Columns& columns,
-                   const std::map<int, std::size_t>& row_of_rank, Timeline& timeline) {
-  for (const Location& l : analysis.trace.locations()) {
-    if (!l.IsMain()) continue;
-    std::vector<StateShares>& row = timeline.rows[row_of_rank.at(l.rank)].columns;
-    for (const CallSpan& span : analysis.kernel[l.index]) {
-      columns.Add(row, Seconds(span.begin_ns), Seconds(span.end_ns), State::kUser, -1);
-      columns.Add(row, Seconds(span.begin_ns), Seconds(span.end_ns), State::kSystem);
-    }
-  }
-}
-
-void AddMessages(const Analysis& analysis, const std::map<int, std::size_t>& row_of_rank,
-                 Timeline& timeline) {
-  for (const SendEvent& s : analysis.mpi.sends) {
-    if (s.receive == kNoIndex) continue;
+void AddMessages(const Analysis& analysis, Timeline& timeline) {
+  const double begin_ns = timeline.begin_s * 1e9;
+  const double end_ns = timeline.end_s * 1e9;
+  timeline.message_count = MessagesIn(analysis.sums, begin_ns, end_ns);
+  if (timeline.message_count > kDrawnMessages) return;
+  std::map<int, std::size_t> row_of_rank;
+  for (std::size_t i = 0; i < timeline.rows.size(); ++i) row_of_rank[timeline.rows[i].rank] = i;
+  for (const std::size_t i : ListMessagesIn(analysis.sums, begin_ns, end_ns)) {
+    const SendEvent& s = analysis.mpi.sends[i];
     const ReceiveEvent& r = analysis.mpi.receives[s.receive];
-    const double send_s = Seconds(s.enter_ns);
-    const double receive_s = Seconds(r.complete_ns);
-    if (receive_s < timeline.begin_s || send_s > timeline.end_s) continue;
-    const auto sender = row_of_rank.find(s.channel.sender);
-    const auto receiver = row_of_rank.find(s.channel.receiver);
-    if (sender == row_of_rank.end() || receiver == row_of_rank.end()) continue;
-    ++timeline.message_count;
-    if (send_s >= timeline.begin_s) {
-      const double place = (send_s - timeline.begin_s) / (timeline.end_s - timeline.begin_s);
-      const auto column =
-          static_cast<std::size_t>(place * static_cast<double>(timeline.sent_bytes.size()));
-      timeline.sent_bytes[std::min(column, timeline.sent_bytes.size() - 1)] +=
-          static_cast<double>(s.bytes);
-    }
-    if (timeline.messages.size() <= kDrawnMessages)
-      timeline.messages.push_back({sender->second, receiver->second, send_s, receive_s, s.bytes});
+    timeline.messages.push_back({row_of_rank.at(s.channel.sender),
+                                 row_of_rank.at(s.channel.receiver), Seconds(s.enter_ns),
+                                 Seconds(r.complete_ns), s.bytes});
   }
-  if (timeline.message_count > kDrawnMessages) timeline.messages.clear();
 }
 
 void AddMarks(const Analysis& analysis, Timeline& timeline) {
@@ -102,31 +87,14 @@ void AddMarks(const Analysis& analysis, Timeline& timeline) {
 }  // namespace
 
 Timeline TimelineOf(const Analysis& analysis, double begin_s, double end_s, std::size_t columns) {
-  const Trace& trace = analysis.trace;
   Timeline timeline;
   timeline.begin_s = begin_s;
   timeline.end_s = end_s > begin_s ? end_s : begin_s + 1e-9;
-  const Columns axis(timeline.begin_s, timeline.end_s, columns);
-  std::map<int, std::size_t> row_of_rank;
-  AddRows(trace, axis, columns, timeline, row_of_rank);
-  for (std::size_t c = 0; c < analysis.mpi.calls.size(); ++c) {
-    const MpiCall& call = analysis.mpi.calls[c];
-    const Location& l = trace.locations()[call.location];
-    if (!l.IsMain()) continue;
-    std::vector<StateShares>& row = timeline.rows[row_of_rank[l.rank]].columns;
-    const double call_begin_s = Seconds(call.begin_ns);
-    const double arrival_s = Seconds(call.begin_ns + analysis.waits[c].idle_ns);
-    const double call_end_s = Seconds(call.end_ns);
-    axis.Add(row, call_begin_s, call_end_s, State::kUser, -1);
-    axis.Add(row, call_begin_s, arrival_s, State::kIdle);
-    axis.Add(row, arrival_s, call_end_s, State::kMessage);
-  }
-  AddKernelTime(analysis, axis, row_of_rank, timeline);
-  for (TimelineRow& row : timeline.rows)
-    for (StateShares& shares : row.columns)
-      for (float& share : shares) share = std::clamp(share, 0.0F, 1.0F);
-  timeline.sent_bytes.resize(columns);
-  AddMessages(analysis, row_of_rank, timeline);
+  const std::vector<double> bounds = BoundsOf(timeline, columns);
+  for (const int rank : analysis.trace.RanksInOrder())
+    timeline.rows.push_back(RowOfRank(analysis, rank, bounds));
+  AddSentBytes(analysis, bounds, timeline);
+  AddMessages(analysis, timeline);
   AddMarks(analysis, timeline);
   return timeline;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Cuts a span of the run into columns and says how each rank divided each of them. Exact: from the
-// calls' own times, never from samples, so a picture does not change its meaning with its width.
+// calls' own times, never from samples, so a picture does not change its meaning with its width. It
+// costs what the columns cost, however long the span is (time_sums.h).
 #ifndef STIPPLE_ANALYSIS_STATS_TIMELINE_OF_H
 #define STIPPLE_ANALYSIS_STATS_TIMELINE_OF_H
 

@@ -23,7 +23,7 @@ struct VisitSpan {
 
 struct VisitsOfSpan {
   std::vector<VisitSpan> visits;  // by begin, outer before inner
-  std::uint64_t events = 0;       // enters, leaves and records in the span
+  std::uint64_t events = 0;       // enters, leaves and records in the span, as far as it was read
   bool complete = true;           // false: there are more than `most` visits, and none are given
 };
 

@@ -7,17 +7,18 @@
 #include "analysis/stats/analysis.h"
 #include "analysis/stats/number.h"
 #include "analysis/tools/command.h"
+#include "analysis/tools/options.h"
 #include "analysis/tools/progress.h"
 #include "analysis/trace/native_stack.h"
 
 namespace stipple {
 
 int RunCheck(const Arguments& arguments) {
-  CLI::App app("Prove an archive sound. One line per problem; exit 0 only if there is none.",
-               "check");
+  CommandOptions app("Prove an archive sound. One line per problem; exit 0 only if there is none.",
+                     "check");
   std::string archive;
-  app.add_option("A", archive, "the archive")->required();
-  if (!Parse(app, arguments)) return 0;
+  app.Add({"A", "", "the archive", true}, archive);
+  if (!app.Parse(arguments)) return 0;
   ProgressLine progress;
   // All is looked at again: an index would only tell what was there when it was made.
   const Trace trace = Trace::Open(archive, progress.meter(), {.use = false});

@@ -13,37 +13,6 @@
 #include "analysis/trace/ranks.h"
 
 namespace stipple {
-namespace {
-
-std::string KnownOptions(const CLI::App& app) {
-  std::string known;
-  for (const CLI::Option* option : app.get_options())
-    if (!option->get_positional()) known += (known.empty() ? "" : " ") + option->get_name();
-  return known;
-}
-
-}  // namespace
-
-bool Parse(CLI::App& app, const Arguments& arguments) {
-  app.set_help_flag("-h,--help", "print this and stop");
-  Arguments reversed(arguments.rbegin(), arguments.rend());
-  try {
-    app.parse(std::move(reversed));
-  } catch (const CLI::CallForHelp&) {
-    WriteOut(app.help());
-    return false;
-  } catch (const CLI::ExtrasError&) {
-    std::string extra;
-    for (const std::string& word : app.remaining()) extra += (extra.empty() ? "" : " ") + word;
-    throw InputError("stipple " + app.get_name(),
-                     "unknown option or argument '" + extra + "'; known: " + KnownOptions(app));
-  } catch (const CLI::ParseError& e) {
-    throw InputError("stipple " + app.get_name(),
-                     std::string(e.what()) + "; known options: " + KnownOptions(app));
-  }
-  return true;
-}
-
 std::string LibraryDirectory() {
   namespace fs = std::filesystem;
   std::error_code error;

@@ -3,19 +3,18 @@
 #ifndef STIPPLE_ANALYSIS_TOOLS_COMMAND_H
 #define STIPPLE_ANALYSIS_TOOLS_COMMAND_H
 
-#include <CLI/CLI.hpp>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "analysis/tools/options.h"
 #include "analysis/trace/compact.h"
 #include "analysis/trace/trace.h"
 
 namespace stipple {
 
 /// Arguments behind the subcommand's name. Returns the exit status; throws InputError.
-using Arguments = std::vector<std::string>;
 using CommandFunction = int (*)(const Arguments& arguments);
 
 struct Command {
@@ -32,18 +31,14 @@ int RunPrint(const Arguments& arguments);
 int RunStats(const Arguments& arguments);
 int RunPlot(const Arguments& arguments);
 int RunReport(const Arguments& arguments);
+int RunCompare(const Arguments& arguments);
 int RunWatch(const Arguments& arguments);
 int RunCompact(const Arguments& arguments);
-int RunCompare(const Arguments& arguments);
 int RunView(const Arguments& arguments);
 int RunExemplar(const Arguments& arguments);
 
 /// An option was not understood: exit 2.
 constexpr int kUsageExit = 2;
-
-/// Parses; a wrong option is an InputError that names the known ones. Returns false when help was
-/// asked for and printed.
-bool Parse(CLI::App& app, const Arguments& arguments);
 
 /// PREFIX/lib/stipple of the running program.
 std::string LibraryDirectory();

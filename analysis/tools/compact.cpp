@@ -10,6 +10,7 @@
 
 #include "analysis/stats/number.h"
 #include "analysis/tools/command.h"
+#include "analysis/tools/options.h"
 #include "analysis/tools/process.h"
 #include "analysis/tools/progress.h"
 #include "analysis/trace/input_error.h"
@@ -54,13 +55,13 @@ void SayLeftAlone(const CompactResult& result) {
 }
 
 int RunCompact(const Arguments& arguments) {
-  CLI::App app("Make an archive smaller. Nothing is lost, and every command reads it as before.",
-               "compact");
+  CommandOptions app(
+      "Make an archive smaller. Nothing is lost, and every command reads it as before.", "compact");
   std::string archive;
   std::string output;
-  app.add_option("A", archive, "the archive")->required();
-  app.add_option("-o", output, "write a new archive and leave A as it is")->type_name("B");
-  if (!Parse(app, arguments)) return 0;
+  app.Add({"A", "", "the archive", true}, archive);
+  app.Add({"-o", "B", "write a new archive and leave A as it is"}, output);
+  if (!app.Parse(arguments)) return 0;
   while (archive.size() > 1 && archive.back() == '/') archive.pop_back();
   if (!fs::is_directory(archive))
     throw InputError(archive, "is not an archive (no such directory)");

@@ -7,6 +7,7 @@
 #include "analysis/report/compare_input.h"
 #include "analysis/stats/analysis.h"
 #include "analysis/tools/command.h"
+#include "analysis/tools/options.h"
 #include "analysis/tools/progress.h"
 #include "analysis/tools/selection_options.h"
 #include "analysis/tools/views_library.h"
@@ -22,18 +23,19 @@ using DrawFunction = decltype(&stipple_draw_compare);
 }  // namespace
 
 int RunCompare(const Arguments& arguments) {
-  CLI::App app("Two runs on one scale: what changed and by how much. Needs no display.", "compare");
+  CommandOptions app("Two runs on one scale: what changed and by how much. Needs no display.",
+                     "compare");
   std::string first;
   std::string second;
   std::string output;
   bool mono = false;
   SelectionOptions selected;
-  app.add_option("A", first, "the archive to compare with")->required();
-  app.add_option("B", second, "the archive that changed")->required();
-  app.add_option("-o", output, "the page to write (default: compare.html)")->type_name("F.html");
-  app.add_flag("--mono", mono, "patterns instead of colours");
+  app.Add({"A", "", "the archive to compare with", true}, first);
+  app.Add({"B", "", "the archive that changed", true}, second);
+  app.Add({"-o", "F.html", "the page to write (default: compare.html)"}, output);
+  app.Add({"--mono", "", "patterns instead of colours"}, mono);
   selected.AddTo(app);
-  if (!Parse(app, arguments)) return 0;
+  if (!app.Parse(arguments)) return 0;
   if (output.empty()) output = "compare.html";
   const auto draw =
       reinterpret_cast<DrawFunction>(FunctionOfViews("stipple compare", "stipple_draw_compare"));

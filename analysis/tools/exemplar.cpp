@@ -8,6 +8,7 @@
 
 #include "analysis/exemplar/experiments.h"
 #include "analysis/tools/command.h"
+#include "analysis/tools/options.h"
 #include "analysis/tools/process.h"
 #include "analysis/tools/views_library.h"
 #include "analysis/trace/input_error.h"
@@ -49,19 +50,17 @@ void MakeFolder(const std::string& folder) {
 }  // namespace
 
 int RunExemplar(const Arguments& arguments) {
-  CLI::App app("The ray tracer's experiments: charts and a self-contained page of them.",
-               "exemplar");
-  app.footer("Experiments:\n" + KnownExperiments());
+  CommandOptions app("The ray tracer's experiments: charts and a self-contained page of them.",
+                     "exemplar");
+  app.Footer("Experiments:\n" + KnownExperiments());
   std::string name;
   ExperimentSetup setup;
-  app.add_option("NAME", name, "the experiment")->required();
-  app.add_option("-o", setup.folder, "where NAME.csv, NAME.svg and index.html go; made if need be")
-      ->type_name("DIR")
-      ->required();
-  app.add_option("--from", setup.from, "draw what was measured before: a folder of CSV files")
-      ->type_name("DIR");
-  app.add_flag("--quick", setup.quick, "small and rough: to see that it works");
-  if (!Parse(app, arguments)) return 0;
+  app.Add({"NAME", "", "the experiment", true}, name);
+  app.Add({"-o", "DIR", "where NAME.csv, NAME.svg and index.html go; made if need be", true},
+          setup.folder);
+  app.Add({"--from", "DIR", "draw what was measured before: a folder of CSV files"}, setup.from);
+  app.Add({"--quick", "", "small and rough: to see that it works"}, setup.quick);
+  if (!app.Parse(arguments)) return 0;
   const Experiment& experiment = ExperimentNamed(name);
   const auto draw =
       reinterpret_cast<DrawFunction>(FunctionOfViews("stipple exemplar", "stipple_draw_exemplar"));

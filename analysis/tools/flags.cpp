@@ -11,8 +11,9 @@
 #include <sstream>
 
 #include "analysis/tools/command.h"
-#include "analysis/tools/selection_account.h"
+#include "analysis/tools/options.h"
 #include "analysis/tools/process.h"
+#include "analysis/tools/selection_account.h"
 #include "analysis/trace/input_error.h"
 #include "analysis/trace/stream.h"
 
@@ -135,19 +136,20 @@ std::string ExplanationOf(const std::string& object) {
 }  // namespace
 
 int RunFlags(const Arguments& arguments) {
-  CLI::App app("Print the flags that make a compiler trace, or say that there is no plugin for it.",
-               "flags");
+  CommandOptions app(
+      "Print the flags that make a compiler trace, or say that there is no plugin for it.",
+      "flags");
   std::string compiler;
   std::string object;
   bool link = false;
   bool is_static = false;
-  app.add_option("COMPILER", compiler, "g++, clang++, mpicxx, gfortran, ...");
-  app.add_flag("--link", link, "what linking needs: with -flto, or --static");
-  app.add_flag("--static", is_static, "with --link: for -static")->needs("--link");
-  app.add_option("--explain", object,
-                 "say what was left out of an object, library or program, and why")
-      ->type_name("OBJECT");
-  if (!Parse(app, arguments)) return 0;
+  app.Add({"COMPILER", "", "g++, clang++, mpicxx, gfortran, ..."}, compiler);
+  app.Add({"--link", "", "what linking needs: with -flto, or --static"}, link);
+  app.Add({"--static", "", "with --link: for -static", false, "--link"}, is_static);
+  app.Add(
+      {"--explain", "OBJECT", "say what was left out of an object, library or program, and why"},
+      object);
+  if (!app.Parse(arguments)) return 0;
   if (object.empty() == compiler.empty())
     throw InputError("stipple flags", "takes either COMPILER or --explain OBJECT");
   if (!object.empty()) {

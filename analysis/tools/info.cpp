@@ -11,6 +11,7 @@
 #include "analysis/stats/analysis.h"
 #include "analysis/stats/number.h"
 #include "analysis/tools/command.h"
+#include "analysis/tools/options.h"
 #include "analysis/tools/progress.h"
 #include "analysis/trace/native_stack.h"
 #include "analysis/trace/ranks.h"
@@ -189,8 +190,7 @@ std::string InfoText(const Analysis& info) {
                         FormatCount(paused.times, "time"));
   if (trace.kept())
     text += fmt::format("ring       keeps the last {}, from {} on; {} overwritten\n",
-                        FormatSeconds(Seconds(trace.SpanNs())),
-                        FormatSeconds(trace.kept()->from_s),
+                        FormatSeconds(Seconds(trace.SpanNs())), FormatSeconds(trace.kept()->from_s),
                         FormatCount(trace.kept()->overwritten_events, "event"));
   if (const FilterTotals filter = FilterOf(trace); !filter.path.empty())
     text += fmt::format("filter     {}: {} of {} left out\n", filter.path,
@@ -212,12 +212,12 @@ std::string InfoText(const Analysis& info) {
 }  // namespace
 
 int RunInfo(const Arguments& arguments) {
-  CLI::App app("What an archive holds.", "info");
+  CommandOptions app("What an archive holds.", "info");
   std::string archive;
   bool json = false;
-  app.add_option("A", archive, "the archive")->required();
-  app.add_flag("--json", json, "as one JSON object");
-  if (!Parse(app, arguments)) return 0;
+  app.Add({"A", "", "the archive", true}, archive);
+  app.Add({"--json", "", "as one JSON object"}, json);
+  if (!app.Parse(arguments)) return 0;
   ProgressLine progress;
   const Trace trace = Trace::Open(archive, progress.meter());
   const Analysis analysis(trace);

@@ -15,6 +15,7 @@
 #include "analysis/stats/tables.h"
 #include "analysis/stats/timeline_of.h"
 #include "analysis/tools/command.h"
+#include "analysis/tools/options.h"
 #include "analysis/tools/progress.h"
 #include "analysis/tools/selection_options.h"
 #include "analysis/tools/views_library.h"
@@ -81,6 +82,7 @@ struct Plot {
   const Analysis& analysis;
   const Selection& selection;
   const PlotChoice& choice;
+  const SelectionOptions& selected;
   PlotInput input{};
   std::string headline{};
 
@@ -89,7 +91,8 @@ struct Plot {
     const bool first = view.by_rank && entry.per_rank;
     for (const bool per_rank : {first, !first}) {
       if (per_rank && !entry.per_rank) continue;
-      TableAnswer answer = entry.make(analysis, selection, TableOptions{per_rank, 0});
+      TableAnswer answer =
+          entry.make(analysis, selection, TableOptions{per_rank, selected.WindowNs()});
       if (view.fits(answer.table)) return answer;
     }
     return std::nullopt;
@@ -109,10 +112,7 @@ struct Plot {
   }
 
   void AddTable(const TableEntry& entry, Choices choices) {
-    if (!selection.WholeTime() && (entry.takes & kTakesSpan) == 0)
-      throw InputError("--from, --to", fmt::format("table '{}' is of the whole run", entry.name));
-    if (selection.ranks && (entry.takes & kTakesRanks) == 0)
-      throw InputError("--ranks", fmt::format("table '{}' is of all ranks", entry.name));
+    selected.RefuseFor(entry);
     std::optional<TableAnswer> answer = Fitting(entry, choice);
     if (!answer) Refuse(entry, choices);
     input.tables.push_back(std::move(answer->table));
@@ -126,10 +126,13 @@ struct Plot {
     const double end_s = selection.end_ns == Selection::kNoEnd
                              ? run_s
                              : std::min(run_s, static_cast<double>(selection.end_ns) * 1e-9);
-    input.timeline = TimelineOf(analysis, begin_s, std::max(begin_s, end_s), kColumns);
+    input.timeline = TimelineOf(analysis, begin_s, std::max(begin_s, end_s),
+                                // Tables need the ranks' names and the span only.
+                                choice.fits == nullptr ? kColumns : 1);
     KeepRanks();
     input.zoomed = !selection.WholeTime();
-    if (input.zoomed) input.visits = VisitBarsOf(analysis.trace, input.timeline, kMostVisits);
+    if (input.zoomed && choice.fits == nullptr)
+      input.visits = VisitBarsOf(analysis.trace, input.timeline, kMostVisits);
   }
 
   /// Rows that were not asked for leave, and their messages with them.
@@ -171,18 +174,17 @@ void CheckColumns(const std::vector<Table>& tables, std::string_view option,
   }
 }
 
-void AddOptions(CLI::App& app, PlotOptions& options) {
-  app.add_option("A", options.archive, "the archive")->required();
-  app.add_option("--view", options.view, "how; see below")->required()->type_name("NAME");
-  app.add_option("--table", options.tables, "what, with commas between")->type_name("NAME,...");
-  app.add_option("-o", options.output, "the picture, by its ending (default: VIEW.svg)")
-      ->type_name("F.svg|pdf|png");
-  app.add_flag("--mono", options.mono, "patterns instead of colours");
-  options.selected.AddTo(app);
-  app.add_option("--at", options.at_s, "the moment that dials, leds, status and kiviat show")
-      ->type_name("SECONDS");
-  app.add_option("--x", options.x, "column along the x axis (graph)")->type_name("COLUMN");
-  app.add_option("--y", options.y, "columns to show, with commas between")->type_name("COLUMN,...");
+void AddOptions(CommandOptions& app, PlotOptions& options) {
+  app.Add({"A", "", "the archive", true}, options.archive);
+  app.Add({"--view", "NAME", "how; see below", true}, options.view);
+  app.Add({"--table", "NAME,...", "what, with commas between"}, options.tables);
+  app.Add({"-o", "F.svg|pdf|png", "the picture, by its ending (default: VIEW.svg)"},
+          options.output);
+  app.Add({"--mono", "", "patterns instead of colours"}, options.mono);
+  options.selected.AddTo(app, kTakesEverything);
+  app.Add({"--at", "SECONDS", "the moment that dials, leds, status and kiviat show"}, options.at_s);
+  app.Add({"--x", "COLUMN", "column along the x axis (graph)"}, options.x);
+  app.Add({"--y", "COLUMN,...", "columns to show, with commas between"}, options.y);
 }
 
 void CheckOutput(const std::string& output) {
@@ -193,12 +195,14 @@ void CheckOutput(const std::string& output) {
 
 Plot Compute(const Analysis& analysis, const Selection& selection, const PlotOptions& options,
              const PlotChoice& choice, Choices choices) {
-  Plot plot{analysis, selection, choice};
+  Plot plot{analysis, selection, choice, options.selected};
   plot.input.view = options.view;
   plot.input.mono = options.mono;
   plot.input.at_s = options.at_s;
   plot.input.x = options.x;
   plot.input.columns = Split(options.y);
+  if (choice.fits == nullptr)
+    options.selected.RefuseFor({choice.name, nullptr, choice.description, false, kTakesPlace});
   if (choice.fits == nullptr && !options.tables.empty())
     throw InputError("--table", fmt::format("view '{}' shows no table", choice.name));
   const std::string names = options.tables.empty() ? std::string(choice.tables) : options.tables;
@@ -215,13 +219,13 @@ Plot Compute(const Analysis& analysis, const Selection& selection, const PlotOpt
 }  // namespace
 
 int RunPlot(const Arguments& arguments) {
-  CLI::App app("A display of one or more statistics as SVG, PDF or PNG; no display needed.",
-               "plot");
+  CommandOptions app("A display of one or more statistics as SVG, PDF or PNG; no display needed.",
+                     "plot");
   PlotOptions options;
   AddOptions(app, options);
   const Choices choices = ChoicesOfLibrary();
-  app.footer(Help(choices));
-  if (!Parse(app, arguments)) return 0;
+  app.Footer(Help(choices));
+  if (!app.Parse(arguments)) return 0;
   const PlotChoice& choice = Choose(choices, "--view", options.view);
   if (options.output.empty()) options.output = options.view + ".svg";
   CheckOutput(options.output);

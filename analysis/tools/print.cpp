@@ -12,6 +12,7 @@
 #include "analysis/report/event_text.h"
 #include "analysis/stats/analysis.h"
 #include "analysis/tools/command.h"
+#include "analysis/tools/options.h"
 #include "analysis/tools/progress.h"
 #include "analysis/tools/selection_options.h"
 #include "analysis/trace/call_stack.h"
@@ -168,14 +169,15 @@ void PrintMerged(const Trace& trace, const Selection& selection) {
 }  // namespace
 
 int RunPrint(const Arguments& arguments) {
-  CLI::App app("Events as text, in order of time.", "print");
+  CommandOptions app("Events as text, in order of time.", "print");
   std::string archive;
   bool canonical = false;
   SelectionOptions selection;
-  app.add_option("A", archive, "the archive")->required();
-  app.add_flag("--canonical", canonical, "for comparing: location after location, no times or ids");
+  app.Add({"A", "", "the archive", true}, archive);
+  app.Add({"--canonical", "", "for comparing: location after location, no times or ids"},
+          canonical);
   selection.AddTo(app);
-  if (!Parse(app, arguments)) return 0;
+  if (!app.Parse(arguments)) return 0;
   ProgressLine progress;
   const Trace trace = Trace::Open(archive, progress.meter());
   const Selection selected = selection.For(trace);

@@ -8,6 +8,7 @@
 #include "analysis/report/report_input.h"
 #include "analysis/stats/analysis.h"
 #include "analysis/tools/command.h"
+#include "analysis/tools/options.h"
 #include "analysis/tools/progress.h"
 #include "analysis/tools/views_library.h"
 #include "analysis/trace/input_error.h"
@@ -22,14 +23,14 @@ using DrawFunction = decltype(&stipple_draw_report);
 }  // namespace
 
 int RunReport(const Arguments& arguments) {
-  CLI::App app("A self-contained HTML page; no display needed.", "report");
+  CommandOptions app("A self-contained HTML page; no display needed.", "report");
   std::string archive;
   std::string output;
   bool mono = false;
-  app.add_option("A", archive, "the archive")->required();
-  app.add_option("-o", output, "the page to write (default: NAME.html)")->type_name("F.html");
-  app.add_flag("--mono", mono, "patterns instead of colours");
-  if (!Parse(app, arguments)) return 0;
+  app.Add({"A", "", "the archive", true}, archive);
+  app.Add({"-o", "F.html", "the page to write (default: NAME.html)"}, output);
+  app.Add({"--mono", "", "patterns instead of colours"}, mono);
+  if (!app.Parse(arguments)) return 0;
   while (archive.size() > 1 && archive.back() == '/') archive.pop_back();
   if (output.empty()) output = std::filesystem::path(archive).stem().string() + ".html";
   const auto draw =

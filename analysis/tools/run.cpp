@@ -18,6 +18,7 @@
 #include "analysis/stats/number.h"
 #include "analysis/tools/command.h"
 #include "analysis/tools/launcher.h"
+#include "analysis/tools/options.h"
 #include "analysis/tools/process.h"
 #include "analysis/tools/progress.h"
 #include "analysis/trace/archive_identity.h"
@@ -51,38 +52,34 @@ void CheckSample(const RunOptions& options, bool asked) {
 
 std::optional<RunOptions> ParseRun(const Arguments& arguments) {
   RunOptions options;
-  CLI::App app("Run a command and record it. The exit status is the command's.", "run");
-  app.footer("-- COMMAND [ARGUMENTS]      what to run, behind the options");
-  app.add_option("-o", options.archive, "the archive to make (default: PROGRAM.stipple)")
-      ->type_name("A");
-  app.add_flag("--overwrite", options.overwrite, "replace an archive that is there");
-  app.add_option(
-         "--clock", options.clock,
-         "budget:P: slow the program by at most P percent (default: budget:5); exact: a time "
-         "for every event; sparse:N: for one event in N (a power of two)")
-      ->type_name("MODE");
-  app.add_option("--filter", options.filter,
-                 "leave out functions: a filter file in Score-P's syntax")
-      ->type_name("FILE");
-  app.add_flag("--paused", options.paused,
-               "begin switched off; stipple_start() or SIGUSR2 switches on");
-  app.add_option("--max-bytes", options.max_bytes,
-                 "keep only the last part of the run: N bytes of events for each process (64M, 2G)")
-      ->type_name("N");
-  app.add_flag("--switches", options.switches, "record context switches and page faults");
-  app.add_option(
-         "--syscalls", options.syscalls,
-         "record system calls: none, io (calls of libc that can block or move data), or all")
-      ->type_name("WHICH");
-  app.add_option("--sample", options.sample_hz,
-                 "native stacks: HZ times per second of each thread's processor time, and at each "
-                 "message and mark; also of programs without the plugin")
-      ->type_name("HZ");
+  CommandOptions app("Run a command and record it. The exit status is the command's.", "run");
+  app.Footer("-- COMMAND [ARGUMENTS]      what to run, behind the options");
+  app.Add({"-o", "A", "the archive to make (default: PROGRAM.stipple)"}, options.archive);
+  app.Add({"--overwrite", "", "replace an archive that is there"}, options.overwrite);
+  app.Add({"--clock", "MODE",
+           "budget:P: slow the program by at most P percent (default: budget:5); exact: a time "
+           "for every event; sparse:N: for one event in N (a power of two)"},
+          options.clock);
+  app.Add({"--filter", "FILE", "leave out functions: a filter file in Score-P's syntax"},
+          options.filter);
+  app.Add({"--paused", "", "begin switched off; stipple_start() or SIGUSR2 switches on"},
+          options.paused);
+  app.Add({"--max-bytes", "N",
+           "keep only the last part of the run: N bytes of events for each process (64M, 2G)"},
+          options.max_bytes);
+  app.Add({"--switches", "", "record context switches and page faults"}, options.switches);
+  app.Add({"--syscalls", "WHICH",
+           "record system calls: none, io (calls of libc that can block or move data), or all"},
+          options.syscalls);
+  app.Add({"--sample", "HZ",
+           "native stacks: HZ times per second of each thread's processor time, and at each "
+           "message and mark; also of programs without the plugin"},
+          options.sample_hz);
   const auto dashes = std::ranges::find(arguments, "--");
-  if (!Parse(app, {arguments.begin(), dashes})) return std::nullopt;
+  if (!app.Parse({arguments.begin(), dashes})) return std::nullopt;
   if (dashes == arguments.end() || dashes + 1 == arguments.end())
     throw InputError("stipple run", "no command: stipple run -o A -- COMMAND");
-  CheckSample(options, app.count("--sample") != 0);
+  CheckSample(options, app.Has("--sample"));
   options.command = {dashes + 1, arguments.end()};
   return options;
 }

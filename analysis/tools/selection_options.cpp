@@ -28,11 +28,11 @@ std::int64_t Nanoseconds(double seconds) {
 
 }  // namespace
 
-void SelectionOptions::AddTo(CLI::App& app, unsigned takes) {
+void SelectionOptions::AddTo(CommandOptions& app, unsigned takes) {
   app_ = &app;
   const auto add = [&](unsigned what, const char* name, auto& value, const char* type,
                        const char* help) {
-    if ((takes & what) != 0) app.add_option(name, value, help)->type_name(type);
+    if ((takes & what) != 0) app.Add({name, type, help}, value);
   };
   add(kTakesSpan, "--from", from_s_, "T", "begin, in seconds since the first event");
   add(kTakesSpan, "--to", to_s_, "T", "end, in seconds since the first event");
@@ -44,10 +44,7 @@ void SelectionOptions::AddTo(CLI::App& app, unsigned takes) {
 }
 
 Selection SelectionOptions::For(const Trace& trace) const {
-  const auto given = [this](const char* name) {
-    const CLI::Option* option = app_->get_option_no_throw(name);
-    return option != nullptr && option->count() != 0;
-  };
+  const auto given = [this](const char* name) { return app_->Has(name); };
   Selection selection;
   if (std::isnan(from_s_)) throw InputError("--from", "is no time");
   if (std::isnan(to_s_)) throw InputError("--to", "is no time");
@@ -65,8 +62,7 @@ Selection SelectionOptions::For(const Trace& trace) const {
 }
 
 std::int64_t SelectionOptions::WindowNs() const {
-  const CLI::Option* option = app_->get_option_no_throw("--window");
-  if (option == nullptr || option->count() == 0) return 0;
+  if (!app_->Has("--window")) return 0;
   if (!(window_s_ >= 1e-9))
     throw InputError("--window", fmt::format("{} s is no length of time", window_s_));
   return Nanoseconds(window_s_);
@@ -74,8 +70,7 @@ std::int64_t SelectionOptions::WindowNs() const {
 
 void SelectionOptions::RefuseFor(const TableEntry& table) const {
   for (const OptionOf& o : kOptions) {
-    const CLI::Option* option = app_->get_option_no_throw(o.name);
-    if ((table.takes & o.takes) != 0 || option == nullptr || option->count() == 0) continue;
+    if ((table.takes & o.takes) != 0 || !app_->Has(o.name)) continue;
     std::string others;
     for (const TableEntry& t : TableEntries())
       if ((t.takes & o.takes) != 0) others.append(" ").append(t.name);

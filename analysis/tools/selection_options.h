@@ -3,11 +3,11 @@
 #ifndef STIPPLE_ANALYSIS_TOOLS_SELECTION_OPTIONS_H
 #define STIPPLE_ANALYSIS_TOOLS_SELECTION_OPTIONS_H
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "analysis/stats/selection.h"
 #include "analysis/stats/tables.h"
+#include "analysis/tools/options.h"
 #include "analysis/trace/trace.h"
 
 namespace stipple {
@@ -15,7 +15,7 @@ namespace stipple {
 class SelectionOptions {
  public:
   /// Adds the options for what a command `takes` (of Takes): --from, --to and --ranks; or more.
-  void AddTo(CLI::App& app, unsigned takes = kTakesPlace);
+  void AddTo(CommandOptions& app, unsigned takes = kTakesPlace);
   /// Throws InputError for what cannot be understood or is not there.
   Selection For(const Trace& trace) const;
   /// --window in nanoseconds; 0: not given.
@@ -32,7 +32,7 @@ class SelectionOptions {
   std::string regions_;
   std::string sizes_;
   std::string tags_;
-  const CLI::App* app_ = nullptr;
+  const CommandOptions* app_ = nullptr;
 };
 
 }  // namespace stipple

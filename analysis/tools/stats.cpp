@@ -6,7 +6,9 @@
 
 #include "analysis/report/text.h"
 #include "analysis/stats/tables.h"
+#include "analysis/stats/team.h"
 #include "analysis/tools/command.h"
+#include "analysis/tools/options.h"
 #include "analysis/tools/progress.h"
 #include "analysis/tools/selection_options.h"
 #include "analysis/trace/input_error.h"
@@ -53,19 +55,19 @@ std::string NothingText(const Trace& trace, const Selection& selection) {
 }  // namespace
 
 int RunStats(const Arguments& arguments) {
-  CLI::App app("A statistic as a table.", "stats");
+  CommandOptions app("A statistic as a table.", "stats");
   std::string archive;
   std::string table;
   std::string format = "text";
   bool per_rank = false;
   SelectionOptions selected;
-  app.add_option("A", archive, "the archive")->required();
-  app.add_option("--table", table, "which; see below")->required()->type_name("NAME");
-  app.add_option("--format", format, "text, csv or json")->type_name("FORMAT");
-  app.add_flag("--per-rank", per_rank, "a row for each rank instead of the sum");
+  app.Add({"A", "", "the archive", true}, archive);
+  app.Add({"--table", "NAME", "which; see below", true}, table);
+  app.Add({"--format", "FORMAT", "text, csv or json"}, format);
+  app.Add({"--per-rank", "", "a row for each rank instead of the sum"}, per_rank);
   selected.AddTo(app, kTakesEverything);
-  app.footer(TableHelp());
-  if (!Parse(app, arguments)) return 0;
+  app.Footer(TableHelp());
+  if (!app.Parse(arguments)) return 0;
   const TableEntry& entry = Choose(TableEntries(), "--table", table);
   const FormatEntry& form = Choose(kFormats, "--format", format);
   selected.RefuseFor(entry);
@@ -76,7 +78,12 @@ int RunStats(const Arguments& arguments) {
   ProgressLine progress;
   const Trace trace = Trace::Open(archive, progress.meter());
   const Selection selection = selected.For(trace);
-  const Analysis analysis(trace);
+  const Team team = Team::OfEnvironment();
+  const bool together =
+      team.size > 1 && trace.index() == nullptr && !trace.header_health().Running();
+  if (together && team.rank != 0) LeaveShare(trace, team);
+  if (team.rank != 0) return 0;
+  const Analysis analysis = together ? Analysis(trace, ScanTogether(trace, team)) : Analysis(trace);
   const TableAnswer answer = entry.make(analysis, selection, {per_rank, window_ns});
   progress.Stop();
   const std::string nothing = NothingText(trace, selection);

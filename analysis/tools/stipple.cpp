@@ -12,6 +12,7 @@
 
 namespace stipple {
 
+
 namespace {
 
 constexpr Command kCommands[] = {

@@ -8,6 +8,7 @@
 #include "analysis/stats/analysis.h"
 #include "analysis/stats/window_source.h"
 #include "analysis/tools/command.h"
+#include "analysis/tools/options.h"
 #include "analysis/tools/progress.h"
 #include "analysis/tools/views_library.h"
 #include "analysis/trace/input_error.h"
@@ -33,15 +34,15 @@ void NeedDisplay() {
 }  // namespace
 
 int RunView(const Arguments& arguments) {
-  CLI::App app("An interactive window: zoom to single events, click for facts, play in time.",
-               "view");
+  CommandOptions app("An interactive window: zoom to single events, click for facts, play in time.",
+                     "view");
   std::string archive;
   std::string ranks;
   bool mono = false;
-  app.add_option("A", archive, "the archive")->required();
-  app.add_option("--ranks", ranks, "show only these at first: 0-3,7,host")->type_name("R");
-  app.add_flag("--mono", mono, "patterns instead of colours");
-  if (!Parse(app, arguments)) return 0;
+  app.Add({"A", "", "the archive", true}, archive);
+  app.Add({"--ranks", "R", "show only these at first: 0-3,7,host"}, ranks);
+  app.Add({"--mono", "", "patterns instead of colours"}, mono);
+  if (!app.Parse(arguments)) return 0;
   NeedDisplay();
   ProgressLine progress;
   const Trace trace = Trace::Open(archive, progress.meter());

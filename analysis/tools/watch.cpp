@@ -3,7 +3,6 @@
 // been recorded until then, so it is exact; to stay cheap however long the run is, the pause before
 // the next reading is at least nine times the processor time that the last one took.
 #include <fmt/format.h>
-
 #include <unistd.h>
 
 #include <algorithm>
@@ -16,6 +15,7 @@
 #include "analysis/report/watch_text.h"
 #include "analysis/stats/tables.h"
 #include "analysis/tools/command.h"
+#include "analysis/tools/options.h"
 #include "analysis/tools/selection_options.h"
 #include "analysis/tools/terminal.h"
 #include "analysis/trace/input_error.h"
@@ -151,15 +151,14 @@ void CheckOptions(const WatchOptions& options) {
 }  // namespace
 
 int RunWatch(const Arguments& arguments) {
-  CLI::App app("What a run does while it goes on.", "watch");
+  CommandOptions app("What a run does while it goes on.", "watch");
   WatchOptions options;
-  app.add_option("A", options.archive, "the archive; it need not be there yet")->required();
-  app.add_option("--interval", options.interval_s, "seconds between two pages; 2")->type_name("S");
-  app.add_option("--window", options.window_s, "seconds that count as lately; the interval")
-      ->type_name("S");
-  app.add_option("--table", options.table, "show this table (of stipple stats)")->type_name("NAME");
-  app.add_flag("--once", options.once, "one page as text, and stop");
-  if (!Parse(app, arguments)) return 0;
+  app.Add({"A", "", "the archive; it need not be there yet", true}, options.archive);
+  app.Add({"--interval", "S", "seconds between two pages; 2"}, options.interval_s);
+  app.Add({"--window", "S", "seconds that count as lately; the interval"}, options.window_s);
+  app.Add({"--table", "NAME", "show this table (of stipple stats)"}, options.table);
+  app.Add({"--once", "", "one page as text, and stop"}, options.once);
+  if (!app.Parse(arguments)) return 0;
   CheckOptions(options);
   std::unique_ptr<Page> last;
   {

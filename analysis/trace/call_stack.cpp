@@ -38,8 +38,12 @@ std::span<const std::uint32_t> CallStack::Record(const EventWord* record) {
 }
 
 void CallStack::Begin(const EventWord* open_frames, std::span<const std::uint32_t> regions) {
-  for (const std::uint32_t region : regions) Push(region);
+  Begin(regions);
   points_.Begin(open_frames);
+}
+
+void CallStack::Begin(std::span<const std::uint32_t> regions) {
+  for (const std::uint32_t region : regions) Push(region);
 }
 
 void CallStack::Push(std::uint32_t region) {

@@ -24,6 +24,8 @@ class CallStack {
   std::span<const std::uint32_t> Record(const EventWord* record);
   /// Begins with the frames in an OpenFrames record, whose regions are `regions`.
   void Begin(const EventWord* open_frames, std::span<const std::uint32_t> regions);
+  /// Begins with these frames.
+  void Begin(std::span<const std::uint32_t> regions);
 
   std::size_t depth() const { return frames_.size(); }
   /// Outermost first.

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/trace/chunks.h"
 
+#include <sys/mman.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -263,6 +266,20 @@ FoundChunks FindLiveChunks(Stream& stream, bool& whole) {
   for (const auto& [number, thread] : found.threads)
     for (const Chunk& c : thread.chunks) stream.clock_pairs.push_back({c.ticks, c.raw_ns});
   return found;
+}
+
+void ReleaseChunk(const Stream& stream, const Chunk& chunk) {
+  static const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+  const auto address = [](const auto* p) { return reinterpret_cast<std::uintptr_t>(p); };
+  const bool coded = !chunk.code.empty();
+  const std::uintptr_t begin = coded ? address(chunk.code.data()) : address(chunk.begin);
+  const std::uintptr_t end = coded ? begin + chunk.code.size() : address(chunk.end);
+  // Copies of what a process still writes lie elsewhere, in memory that would be lost.
+  const Bytes file = stream.file.bytes();
+  if (begin < address(file.data()) || end > address(file.data()) + file.size()) return;
+  const std::uintptr_t first = begin / page * page;
+  const std::uintptr_t last = end / page * page;
+  if (first < last) madvise(reinterpret_cast<void*>(first), last - first, MADV_DONTNEED);
 }
 
 std::vector<Chunk> FindLiveDefinitions(const MappedFile& mapped) {

@@ -26,6 +26,10 @@ FoundChunks FindChunks(Stream& stream);
 /// thread was too fast, and its last chunks are not there.
 FoundChunks FindLiveChunks(Stream& stream, bool& whole);
 
+/// The pages of a chunk that was read need not stay resident; when they are read again they come
+/// back.
+void ReleaseChunk(const Stream& stream, const Chunk& chunk);
+
 /// Chunks of definitions of a file that is being written; these only grow.
 std::vector<Chunk> FindLiveDefinitions(const MappedFile& file);
 

@@ -114,9 +114,10 @@ bool IndexFile::ReadEntries(int file) {
   ForEachIndex(entries_.size(), [&](std::size_t i) {
     const IndexEntry& e = entries_[i];
     sound[i] = e.item_bytes != 0 && e.offset % kAlign == 0 && e.offset <= bytes &&
-               e.items <= (bytes - e.offset) / e.item_bytes && e.name[sizeof(e.name) - 1] == 0 &&
-               IsAsWritten(file, e);
+               e.items <= (bytes - e.offset) / e.item_bytes && IsAsWritten(file, e);
   });
+  for (IndexEntry& e : entries_) e.name[sizeof(e.name) - 1] = 0;
+  for (const IndexEntry& e : entries_) by_name_.try_emplace(std::string_view(e.name), &e);
   return std::ranges::count(sound, 0) == 0;
 }
 
@@ -132,9 +133,9 @@ std::shared_ptr<const IndexFile> IndexFile::Open(const std::string& path) {
 }
 
 const IndexEntry* IndexFile::Find(std::string_view name, std::size_t item_bytes) const {
-  const auto entry = std::ranges::find_if(
-      entries_, [name](const IndexEntry& e) { return name == std::string_view(e.name); });
-  return entry != entries_.end() && entry->item_bytes == item_bytes ? &*entry : nullptr;
+  const auto entry = by_name_.find(name);
+  return entry != by_name_.end() && entry->second->item_bytes == item_bytes ? entry->second
+                                                                            : nullptr;
 }
 
 std::string_view IndexFile::Bytes(std::string_view name) const {

@@ -11,6 +11,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -81,6 +82,7 @@ class IndexFile : public std::enable_shared_from_this<IndexFile> {
 
   MappedFile file_;
   std::vector<IndexEntry> entries_;
+  std::map<std::string_view, const IndexEntry*> by_name_;
 };
 
 /// Writes an index. What goes wrong (no room, no permission) is told by Finish, and leaves no file.

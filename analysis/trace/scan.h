@@ -73,7 +73,7 @@ class ChunkWords {
 
 /// Where a scan can be taken up again, in a few words that can be kept: a scan from here meets the
 /// same events with the same times. What a visitor had gathered is the visitor's matter: see
-/// ProfileVisitor::OpenStack.
+/// ProfileVisitor::OpenVisits.
 struct ScanPlace {
   std::uint64_t chunk = 0;
   std::uint64_t words = 0;  // of the chunk that are behind

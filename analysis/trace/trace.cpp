@@ -230,6 +230,7 @@ void Trace::PlaceLocations() {
     span_ns_ = std::max(span_ns_, l.end_ns);
   }
   counts_.resize(locations_.size());
+  anchors_.resize(locations_.size());
 }
 
 /// The time from which on all threads are complete, if a ring dropped something, becomes time 0.

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "analysis/trace/anchors.h"
 #include "analysis/trace/archive_identity.h"
 #include "analysis/trace/clock.h"
 #include "analysis/trace/health.h"
@@ -153,7 +154,7 @@ class Trace {
   }
   /// The same, and `part_done(const ScanPosition&)` is called behind each chunk and within it
   /// behind every `part_words` words or so: what the visitor knows then, with
-  /// ScanPosition::Place(), is what an index of the events needs, see ProfileVisitor::OpenStack.
+  /// ScanPosition::Place(), is what an index of the events needs, see ProfileVisitor::OpenVisits.
   template <class Visitor, class PartDone>
   void ScanParts(const Location& l, Visitor& visitor, std::uint64_t part_words,
                  PartDone&& part_done) const {
@@ -161,6 +162,31 @@ class Trace {
         *l.stream, ProcessOf(l).RegionCount(), visitor,
         [this](std::uint64_t bytes) { TellRead(bytes); }, part_words, part_done);
   }
+  /// Scans the part of a location that holds all events from `from_ticks` to `to_ticks`, and a few
+  /// around it. A visitor is first told, by Open(visits), what is open where the scan begins. What
+  /// it costs follows the part, if the archive has been analysed (anchors.h).
+  template <class Visitor>
+  void ScanSpan(const Location& l, std::uint64_t from_ticks, std::uint64_t to_ticks,
+                Visitor& visitor) const {
+    constexpr std::uint64_t kPartWords = 4096;
+    const ScanAnchor* anchor = AnchorsOf(l).Before(from_ticks);
+    ScanPosition at(anchor == nullptr ? ScanPlace{} : anchor->place);
+    if (anchor != nullptr) visitor.Open(AnchorsOf(l).OpenAt(*anchor));
+    ScanCounts counts;
+    while (at.now <= to_ticks && !visitor.Done()) {
+      const std::size_t chunk = at.chunk;
+      if (!ScanSome(*l.stream, ProcessOf(l).RegionCount(), kPartWords, at, counts, visitor)) break;
+      if (at.chunk != chunk) TellRead(l.stream->chunks[chunk].Bytes());
+    }
+  }
+  /// Where scans of the location can begin; none if it was not told.
+  const Anchors& AnchorsOf(const Location& l) const { return anchors_[l.index]; }
+  /// To be told by who scans all of it.
+  void KeepAnchors(const Location& l, Anchors anchors) const {
+    anchors_[l.index] = std::move(anchors);
+  }
+  /// What a scan of it counted elsewhere.
+  void KeepCounts(const Location& l, const ScanCounts& counts) const { counts_[l.index] = counts; }
   /// Calls `body` for each location of `some` on several cores, so that each may be scanned once;
   /// the meter counts it as one phase.
   void ForEachOf(std::span<const Location* const> some, const char* phase,
@@ -190,6 +216,8 @@ class Trace {
 
   /// What was saved of these very streams; null if nothing was.
   const std::shared_ptr<const IndexFile>& index() const { return index_; }
+  /// Which streams it is, as they were when it was opened.
+  const std::string& identity() const { return identity_.bytes; }
   /// Saves what Open and Scan found and what `add` adds, if the archive is worth an index and does
   /// not change. A place that cannot be written is passed over in silence.
   void SaveIndex(const std::function<void(IndexWriter&)>& add) const;
@@ -221,7 +249,8 @@ class Trace {
   std::int64_t span_ns_ = 0;
   int rank_count_ = 0;
   TraceHealth health_;
-  mutable std::vector<std::optional<ScanCounts>> counts_;
+  mutable std::vector<std::optional<ScanCounts>> counts_;  // by location
+  mutable std::vector<Anchors> anchors_;                   // likewise
   std::unique_ptr<FrameNames> frame_names_ = std::make_unique<FrameNames>();
   ReadMeter* meter_ = nullptr;
   IndexPolicy policy_;

@@ -10,9 +10,8 @@
 namespace stipple {
 
 void Trace::FindIndex(const std::vector<std::string>& files) {
-  if (!policy_.use) return;
   identity_ = IdentityOf(files);
-  if (identity_.stream_bytes < policy_.least_bytes) return;
+  if (!policy_.use || identity_.stream_bytes < policy_.least_bytes) return;
   for (const std::string& place : IndexPlaces(path_)) {
     index_ = IndexFile::Open(place);
     if (index_ != nullptr && index_->Bytes("identity") == identity_.bytes) return;
@@ -27,7 +26,13 @@ void Trace::LoadCounts() {
     index_.reset();  // of another archive than it says
     return;
   }
-  for (std::size_t i = 0; i < counts_.size(); ++i) counts_[i] = (*counts)[i];
+  for (std::size_t i = 0; i < counts_.size(); ++i) {
+    counts_[i] = (*counts)[i];
+    const std::string number = std::to_string(i);
+    if (const auto places = index_->Get<ScanAnchor>("anchors." + number); places)
+      anchors_[i].places = *places;
+    if (const auto open = index_->Get<OpenVisit>("open." + number); open) anchors_[i].open = *open;
+  }
 }
 
 void Trace::SaveIndex(const std::function<void(IndexWriter&)>& add) const {
@@ -45,6 +50,12 @@ void Trace::SaveIndex(const std::function<void(IndexWriter&)>& add) const {
     for (std::size_t i = 0; i < streams_.size(); ++i)
       to.AddBytes("stream." + std::to_string(stream_numbers_[i]), SavedStream(*streams_[i]));
     to.Add("counts", std::span<const ScanCounts>(counts));
+    for (std::size_t i = 0; i < anchors_.size(); ++i) {
+      const std::string number = std::to_string(i);
+      if (anchors_[i].places.empty()) continue;
+      to.Add("anchors." + number, std::span<const ScanAnchor>(anchors_[i].places));
+      to.Add("open." + number, std::span<const OpenVisit>(anchors_[i].open));
+    }
     add(to);
     if (to.Finish()) return;
   }

@@ -138,13 +138,16 @@ void AddNames(const PanelPlace& place, const Panel& panel, Layer& layer) {
                     {.size = 12, .colour = kSecondary, .anchor = Anchor::kMiddle}};
     if (room.Take(shape, 6)) layer.shapes.emplace_back(std::move(shape));
   };
-  for (std::size_t i = 0; i < panel.bins.size(); ++i) {
-    if (panel.classes)
-      add(place.XOf(i), SizeText(panel.bins[i].low));
-    else
-      add(place.XOf(i) + place.pitch / 2,
-          ShortenEnd(panel.bins[i].name, std::max(60.0, place.pitch - 8), 12));
-  }
+  const auto text_of = [&](const Bin& bin) {
+    if (panel.classes) return SizeText(bin.low);
+    return ShortenEnd(bin.name, std::max(60.0, place.pitch - 8), 12);
+  };
+  double widest = 0;
+  for (const Bin& bin : panel.bins) widest = std::max(widest, TextWidth(text_of(bin), 12) + 14);
+  std::size_t step = 1;
+  while (static_cast<double>(step) * place.pitch < widest && step < panel.bins.size()) step *= 2;
+  for (std::size_t i = 0; i < panel.bins.size(); i += step)
+    add(place.XOf(i) + (panel.classes ? 0 : place.pitch / 2), text_of(panel.bins[i]));
   if (panel.classes) add(place.XOf(panel.bins.size()), SizeText(panel.bins.back().high));
 }
 

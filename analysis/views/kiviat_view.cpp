@@ -20,7 +20,7 @@ namespace stipple {
 namespace {
 
 constexpr double kWidth = 680, kHeight = 560, kRadius = 220;
-constexpr std::size_t kMostAxes = 2048;  // beyond that neighbours share one
+constexpr std::size_t kMostAxes = 128;   // beyond that neighbours share one
 constexpr std::size_t kMostSpokes = 64;  // more lines would be a grey disc
 constexpr std::size_t kMostPolygons = 4;
 constexpr double kLabel = 12, kRingLabel = 11;
@@ -34,9 +34,11 @@ struct Kiviat {
   double Turn(std::size_t rank) const {
     return static_cast<double>(rank) / static_cast<double>(table.ranks.size());
   }
+  Point At(std::size_t column, std::size_t rank, double value) const {
+    return OnCircle(kCentre, kRadius * axes[column].ShareOf(value), Turn(rank));
+  }
   Point At(std::size_t column, std::size_t rank) const {
-    const double share = axes[column].ShareOf(table.columns[column].values[rank]);
-    return OnCircle(kCentre, kRadius * share, Turn(rank));
+    return At(column, rank, table.columns[column].values[rank]);
   }
 };
 
@@ -75,15 +77,30 @@ Layer RingLabels(const Kiviat& kiviat) {
   return layer;
 }
 
+/// Of ranks that share an axis, from the least to the most: one that differs is not lost in a mean.
+void AddBand(const Kiviat& kiviat, Layer& layer) {
+  const RankColumn& column = kiviat.table.columns.front();
+  const std::size_t count = kiviat.table.ranks.size();
+  for (std::size_t i = 0; i < column.most.size(); ++i) {
+    const std::size_t next = (i + 1) % count;
+    layer.shapes.emplace_back(PolygonShape{
+        {kiviat.At(0, i, column.least[i]), kiviat.At(0, i, column.most[i]),
+         kiviat.At(0, next, column.most[next]), kiviat.At(0, next, column.least[next])},
+        kBand});
+  }
+}
+
 /// A closed line for each column and, of few ranks, a dot on each axis.
 Layer Polygons(const Kiviat& kiviat) {
   Layer layer{"curves", {}};
   const std::size_t count = kiviat.table.ranks.size();
+  AddBand(kiviat, layer);
   for (std::size_t c = kiviat.table.columns.size(); c-- > 0;) {
     const Colour colour = ColoursOf(kiviat.table.columns[c].column, c).line;
     std::vector<Point> points;
     for (std::size_t i = 0; i < count; ++i) points.push_back(kiviat.At(c, i));
-    if (c == 0 && kiviat.table.columns.size() <= 2 && count > 2)
+    if (c == 0 && kiviat.table.columns.size() <= 2 && count > 2 &&
+        kiviat.table.columns[c].most.empty())
       layer.shapes.insert(layer.shapes.begin(), PolygonShape{points, kBand});
     points.push_back(count == 1 ? kCentre : points.front());
     layer.shapes.emplace_back(LineShape{std::move(points), colour, 2, false, 1});
@@ -144,7 +161,9 @@ Scene KiviatView(const ViewInput& input) {
   scene.title = fmt::format("{} by {}{}", HeadingOf(table), noun, MomentText(table));
   scene.description = fmt::format(
       "An axis for each {} around a centre, a closed line for each of {}.", noun, LabelsOf(table));
-  scene.note = ranks_per_axis > 1 ? fmt::format("an axis: mean of {} ranks", ranks_per_axis) : "";
+  scene.note = ranks_per_axis > 1
+                   ? fmt::format("an axis: mean of {} ranks, band: least to most", ranks_per_axis)
+                   : "";
   AddScaleNotes(scene, table);
   scene.layers = {Rings(kiviat), Polygons(kiviat), Names(kiviat), RingLabels(kiviat)};
   for (std::size_t c = 0; c < table.columns.size(); ++c)

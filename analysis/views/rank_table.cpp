@@ -179,8 +179,15 @@ RankTable Grouped(const RankTable& table, std::size_t most, std::size_t& ranks_p
     grouped.ranks.push_back(std::move(row));
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
       Gathered mean;
-      for (std::size_t k = i; k < end; ++k) mean.Add(table.columns[c].values[k]);
+      double low = kNothing, high = kNothing;
+      for (std::size_t k = i; k < end; ++k) {
+        const double value = table.columns[c].values[k];
+        mean.Add(value);
+        low = std::fmin(low, value), high = std::fmax(high, value);
+      }
       grouped.columns[c].values.push_back(mean.Value(Quantity::kShare));
+      grouped.columns[c].least.push_back(low);
+      grouped.columns[c].most.push_back(high);
     }
     i = end;
   }

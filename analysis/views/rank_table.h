@@ -20,8 +20,9 @@ struct RankColumn {
   std::string column{};  // its name in the table
   std::string label{};   // in words; with the table's name if another table has the same column
   Quantity quantity = Quantity::kCount;
-  std::vector<double> values{};  // by rank; not a number: not recorded
-  double largest = 0;            // of the columns that count the same, and at all times
+  std::vector<double> values{};         // by rank; not a number: not recorded
+  std::vector<double> least{}, most{};  // of the ranks in each group; empty: not grouped
+  double largest = 0;                   // of the columns that count the same, and at all times
 };
 
 struct RankTable {

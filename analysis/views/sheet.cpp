@@ -17,6 +17,14 @@ constexpr double kTitleLine = 26, kKeyLine = 22;
 constexpr double kSwatch = 12, kStroke = 20;
 constexpr double kLeastWidth = 520;  // of a sheet, so that titles have room
 
+/// Titles begin as sentences; names of columns with an underscore stay as they are.
+std::string Capitalised(std::string title) {
+  const bool name = title.substr(0, title.find(' ')).find('_') != title.npos;
+  if (!name && !title.empty() && title[0] >= 'a' && title[0] <= 'z')
+    title[0] = static_cast<char>(title[0] - 'a' + 'A');
+  return title;
+}
+
 /// What the texts above the scene take, line by line.
 struct Head {
   Layer layer{"head", {}};
@@ -25,10 +33,11 @@ struct Head {
 
   void AddTitle(const Scene& scene) {
     if (scene.title.empty()) return;
-    layer.shapes.emplace_back(TextShape{kMargin,
-                                        y + 8,
-                                        ShortenEnd(scene.title, width / 1.12, kTitleSize),
-                                        {.size = kTitleSize, .colour = kInk, .bold = true}});
+    layer.shapes.emplace_back(
+        TextShape{kMargin,
+                  y + 8,
+                  ShortenEnd(Capitalised(scene.title), width / 1.12, kTitleSize),
+                  {.size = kTitleSize, .colour = kInk, .bold = true}});
     y += kTitleLine;
   }
 

@@ -76,6 +76,33 @@ TEST(Blame, TokenInARingIsSerialisation) {
   }
 }
 
+// With work of its own, 400, besides its turn of 500 no rank waits for three whole turns.
+TEST(Blame, TokenIsSerialisationAlsoAmongRanksThatWorkMeanwhile) {
+  std::vector<Rank> ranks = Ranks(4);
+  std::vector<std::uint64_t> free_at(4, 1400);
+  std::uint64_t token_at = 1400;
+  for (int turn = 0; turn < 20; ++turn) {
+    const int r = turn % 4;
+    Rank& rank = ranks[static_cast<std::size_t>(r)];
+    std::uint64_t& now = free_at[static_cast<std::size_t>(r)];
+    if (turn > 0) rank.Receive((r + 3) % 4, 1, now, token_at + 1);
+    rank.Call(kWork, token_at + 2, token_at + 490);
+    token_at += 500;
+    if (turn < 19) rank.Send((r + 1) % 4, 1, token_at, token_at + 5);
+    now = token_at + 400;
+  }
+  for (Rank& r : ranks) r.End(12'000);
+  const Written w(ranks);
+  double turns = 0;
+  double all = 0;
+  for (const auto& [key, ns] : SumsOf(w)) {
+    all += ns;
+    if (std::get<0>(key) == "serialisation") turns += ns;
+  }
+  EXPECT_GT(turns, 0.8 * all);
+  ExpectAllIdleTimeIsCharged(w);
+}
+
 TEST(Blame, TurnsBetweenBarriersAreSerialisation) {
   std::vector<Rank> ranks = Ranks(4);
   for (int r = 0; r < 4; ++r) {

@@ -59,8 +59,9 @@ void ExpectLawsHold(const Written& w) {
     idle_s += static_cast<double>(s.idle_ns) * 1e-9;
   EXPECT_NEAR(blamed_s * 1e9, idle_s * 1e9, 1e-2);
   const Efficiency e = EfficiencyOf(analysis, {});
-  if (e.parallel && e.load_balance)
+  if (e.parallel && e.load_balance) {
     EXPECT_NEAR(*e.parallel, *e.load_balance * *e.communication, 1e-12);
+  }
   if (e.serialisation && e.transfer) {
     EXPECT_NEAR(*e.communication, *e.serialisation * *e.transfer, 1e-12);
     EXPECT_LE(*e.serialisation, 1 + 1e-12);
@@ -92,8 +93,8 @@ TEST(CriticalPath, GoesFromTheReceiverToTheSenderItWaitedFor) {
   ExpectLawsHold(w);
   const Analysis analysis(w.trace);
   const auto rows = CausesOf(analysis, {}).path_rows;
-  EXPECT_EQ(CriticalPathSentence(analysis, rows, {}).substr(0, 62),
-            "The critical path spends 48% of the run in work on rank 0; 970");
+  const std::string sentence = CriticalPathSentence(analysis, rows, {});
+  EXPECT_NE(sentence.find("of the run in work on rank 0; 1.84"), std::string::npos) << sentence;
 }
 
 TEST(CriticalPath, OfASpanIsAPartOfThatOfTheRun) {
@@ -120,7 +121,8 @@ TEST(CriticalPath, FollowsATokenAround) {
     r.Call(kWork, begin + 20, begin + 980);
     if (turn < 7) r.Send((turn + 1) % 4, 1, begin + 1000, begin + 1005);
   }
-  for (Rank& r : ranks) r.End(9000);
+  for (int r = 0; r < 4; ++r)
+    ranks[static_cast<std::size_t>(r)].End(6010 + 1000 * static_cast<std::uint64_t>(r));
   const Written w(ranks);
   ExpectLawsHold(w);
   for (int r = 0; r < 4; ++r) EXPECT_NEAR(PathOf(w).at({r, "work"}), 2 * 960, 1e-3);
@@ -183,19 +185,23 @@ TEST(Efficiency, OfASerialProgramSaysNothingOfCommunication) {
   ExpectLawsHold(w);
 }
 
+std::vector<std::size_t> BeginsOf(const std::vector<double>& feature) {
+  return ChangePointsOf(std::vector<std::vector<double>>(1, feature), kMostPhases);
+}
+
 TEST(Phases, AreFoundWhereTheSeriesChanges) {
   std::vector<double> series(512, 0.9);
   for (std::size_t i = 100; i < 300; ++i) series[i] = 0.2;
   for (std::size_t i = 0; i < series.size(); ++i) series[i] += i % 2 == 0 ? 0.01 : -0.01;
-  EXPECT_EQ(ChangePointsOf(std::vector{series}, 12), (std::vector<std::size_t>{0, 100, 300}));
-  EXPECT_EQ(ChangePointsOf(std::vector{std::vector<double>(512, 0.5)}, 12).size(), 1U);
-  EXPECT_EQ(ChangePointsOf(std::vector{std::vector<double>{1}}, 12).size(), 1U);
+  EXPECT_EQ(BeginsOf(series), (std::vector<std::size_t>{0, 100, 300}));
+  EXPECT_EQ(BeginsOf(std::vector<double>(512, 0.5)).size(), 1U);
+  EXPECT_EQ(BeginsOf({1}).size(), 1U);
 }
 
 TEST(Phases, StepsOfALoopAreNotHundredsOfPhases) {
   std::vector<double> series;
   for (int i = 0; i < 512; ++i) series.push_back(i / 8 % 2 == 0 ? 1 : 0);
-  EXPECT_LE(ChangePointsOf(std::vector{series}, 12).size(), 12U);
+  EXPECT_LE(BeginsOf(series).size(), 12U);
 }
 
 /// First all work alike; then rank 2 calls help three times as often as the others, between
@@ -235,8 +241,9 @@ TEST(ImbalanceSplit, TellsMoreWorkFromDearerWork) {
   for (const SplitPart& p : causes.split) {
     ns[{p.rank, std::string(NameOf(p.what))}] += p.seconds * 1e9;
     sums[p.phase] += p.seconds * 1e9;
-    if (p.what == SplitKind::kMoreWork && p.rank == 2 && p.seconds > 1e-6)
+    if (p.what == SplitKind::kMoreWork && p.rank == 2 && p.seconds > 1e-6) {
       EXPECT_EQ(w.trace.regions()[p.region].name, "help");
+    }
   }
   for (const auto& [phase, sum] : sums) EXPECT_NEAR(sum, 0, 0.1) << phase;
   // Rank 2: 90 visits of 1000, the mean is 45. Rank 1: 100 000, the mean is 62 500.

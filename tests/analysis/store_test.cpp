@@ -16,6 +16,7 @@
 #include "analysis/report/text.h"
 #include "analysis/stats/tables.h"
 #include "tests/analysis/archive_writer.h"
+#include "tests/analysis/ring.h"
 
 namespace stipple {
 namespace {
@@ -23,58 +24,10 @@ namespace {
 namespace fs = std::filesystem;
 using testing::StreamWriter;
 using testing::TemporaryArchive;
+using testing::WriteRing;
 
 constexpr IndexPolicy kAlways{true, 0};
 constexpr IndexPolicy kNever{false, 0};
-
-enum : std::uint32_t { kMain = 1, kWork, kSend, kReceive, kBarrier };
-
-/// A ring of ranks: each works, sends to the next and receives from the one before, again and
-/// again; now and then there is a barrier.
-StreamWriter RankOfRing(std::int32_t rank, std::int32_t size, std::uint64_t rounds,
-                        std::uint64_t seed) {
-  StreamWriter s(static_cast<std::uint32_t>(rank + 1));
-  s.World(rank, size);
-  s.Region(kMain, "main");
-  s.Region(kWork, "work" + std::to_string(seed % 3));
-  s.Region(kSend, "MPI_Send", RegionKind::kMpi);
-  s.Region(kReceive, "MPI_Recv", RegionKind::kMpi);
-  s.Region(kBarrier, "MPI_Barrier", RegionKind::kMpi);
-  s.Name(1, "round");
-  std::mt19937_64 random(seed * 1000 + static_cast<std::uint64_t>(rank));
-  std::uint64_t now = 1000;
-  const auto next = [&] { return now += 1 + random() % 200; };
-  s.NewChunk(now);
-  s.Enter(kMain, now);
-  for (std::uint64_t round = 0; round < rounds; ++round) {
-    now = std::max(now, 1000 + round * 1000);
-    s.Enter(kWork, next());
-    if (round % 7 == 0) s.Append(Mark{0, now, 1, 0});
-    s.Leave(kWork, next());
-    s.Enter(kSend, next());
-    s.Append(MpiSend{0, now, 8 + random() % 100, 1, (rank + 1) % size, 5, 0});
-    s.Leave(kSend, next());
-    s.Enter(kReceive, next());
-    s.Append(MpiReceive{0, next(), 8, 1, (rank + size - 1) % size, 5, 0});
-    s.Leave(kReceive, next());
-    if (round % 5 != 0) continue;
-    s.Enter(kBarrier, next());
-    s.Append(MpiCollective{0, now, 0, 0, 1, -1, kBarrier, 0});
-    s.Leave(kBarrier, next());
-  }
-  s.Leave(kMain, next());
-  s.End(now);
-  return s;
-}
-
-void WriteRing(TemporaryArchive& archive, std::int32_t size, std::uint64_t rounds,
-               std::uint64_t seed) {
-  for (std::int32_t rank = 0; rank < size; ++rank)
-    archive.Add(RankOfRing(rank, size, rounds, seed));
-  // As old as any archive is when somebody looks at it a second time.
-  for (const fs::directory_entry& entry : fs::directory_iterator(archive.path()))
-    fs::last_write_time(entry, fs::file_time_type::clock::now() - std::chrono::hours(1));
-}
 
 fs::path IndexOf(const TemporaryArchive& archive) { return fs::path(archive.path()) / kIndexName; }
 
@@ -128,9 +81,9 @@ TEST(Store, EmptyArchivesAndArchivesOfOneEventAreTheSame) {
   EXPECT_EQ(AllTables(empty.path(), kAlways), AllTables(empty.path(), kNever));
   TemporaryArchive one;
   StreamWriter s(1);
-  s.Region(kMain, "main");
+  s.Region(1, "main");
   s.NewChunk(1000);
-  s.Enter(kMain, 1000);
+  s.Enter(1, 1000);
   one.Add(s);
   for (int i = 0; i < 2; ++i)
     EXPECT_EQ(AllTables(one.path(), kAlways), AllTables(one.path(), kNever));
@@ -158,7 +111,7 @@ TEST(Store, AChangedArchiveIsReadAnew) {
 
 TEST(Store, AnArchiveThatChangedJustNowIsNotIndexed) {
   TemporaryArchive archive;
-  archive.Add(RankOfRing(0, 1, 10, 1));
+  archive.Add(testing::RankOfRing(0, 1, 10, 1));
   AllTables(archive.path(), kAlways);
   const fs::path stream = fs::path(archive.path()) / "computer.1.1.stream";
   fs::last_write_time(stream, fs::file_time_type::clock::now() + std::chrono::hours(1));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// bench_redraw [EVENTS] [DIRECTORY]: writes an archive of eight ranks with EVENTS function events in
-// all (default 1e8, 800 MB), one message per thousand, opens it in a window and measures CPU time of
-// this process per frame, software rendering included, at six zooms: while moving, at rest, and
-// when only the cursor has moved. Needs DISPLAY.
+// bench_redraw [EVENTS] [DIRECTORY]: writes an archive of eight ranks with EVENTS function events
+// in all (default 1e8, 800 MB), one message per thousand, opens it in a window and measures CPU
+// time of this process per frame, software rendering included, at six zooms: while moving, at rest,
+// and when only the cursor has moved. Needs DISPLAY.
 #include <time.h>
 
 #include <algorithm>
@@ -65,8 +65,8 @@ class EventFile {
     if (words_.size() + words > kChunkBytes / 8) WriteChunk();
     if (!words_.empty()) return;
     words_.resize(sizeof(ChunkHeader) / 8);
-    const ChunkHeader h{kChunkMagic, kChunkBytes, ChunkKind::kEvents, 0, 1, sequence_++, ticks,
-                        ticks,       0,           0};
+    const ChunkHeader h{
+        kChunkMagic, kChunkBytes, ChunkKind::kEvents, 0, 1, sequence_++, ticks, ticks, 0, 0};
     std::memcpy(words_.data(), &h, sizeof(h));
   }
   void WriteChunk() {
@@ -85,7 +85,8 @@ class EventFile {
 void WriteRank(const std::string& path, std::int32_t rank, std::uint64_t events) {
   testing::StreamWriter definitions(static_cast<std::uint32_t>(rank + 1));
   definitions.World(rank, kRanks);
-  for (std::uint32_t r = 1; r <= kRegions; ++r) definitions.Region(r, "function" + std::to_string(r));
+  for (std::uint32_t r = 1; r <= kRegions; ++r)
+    definitions.Region(r, "function" + std::to_string(r));
   definitions.Region(kSend, "MPI_Send", RegionKind::kMpi);
   definitions.Region(kReceive, "MPI_Recv", RegionKind::kMpi);
   EventFile file(path + "/bench." + std::to_string(rank + 1) + ".1.stream", definitions.Bytes());

@@ -35,6 +35,7 @@ namespace {
 constexpr std::size_t kWindows = 50;
 constexpr double kWindowPart = 0.01;  // of the run
 constexpr std::size_t kSampleBytes = 16;
+constexpr double kRounding = 1e-6;       // a smaller error is none: shares of bins are floats
 constexpr double kMostImbalance = 1.05;  // below, no rank is said to have the most work
 
 double CpuSeconds() {
@@ -289,6 +290,7 @@ class Resolution {
 std::string LabelOf(const Figure& f) {
   const double n = std::stod(f.setting);
   if (f.method == "bins") return n < 1e5 ? f.setting : std::to_string(std::llround(n / 1e3)) + " k";
+  if (n >= 1e6) return std::to_string(std::llround(n / 1e6)) + " MHz";
   return n < 1e3 ? f.setting + " Hz" : std::to_string(std::llround(n / 1e3)) + " kHz";
 }
 
@@ -303,6 +305,7 @@ void Draw(const std::vector<Figure>& figures, const char* path) {
   std::vector<double> ys;
   const auto add = [&](std::size_t series, const Figure& f, double error, std::string label) {
     xs.push_back(f.bytes);
+    error = error < kRounding ? 0 : error;
     ys.push_back(100 * error);
     chart.series[series].points.push_back(
         {f.bytes, 100 * error, std::move(label), !f.is_named && series != 2});
@@ -312,7 +315,7 @@ void Draw(const std::vector<Figure>& figures, const char* path) {
     if (f.method == "bins") add(0, f, f.windows, LabelOf(f));
     if (f.method != "samples") continue;
     add(1, f, f.windows, LabelOf(f));
-    add(2, f, *f.profile, LabelOf(f));
+    add(2, f, *f.profile, "");
   }
   chart.x = AxisOver("bytes that the answer is made from", xs);
   chart.y = AxisOver("error of shares, % (ring: another rank is named than from all events)", ys);

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Triangles cover what the shapes cover.
-#include "analysis/views/window/scene_batch.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
 #include "analysis/views/palette.h"
+#include "analysis/views/window/scene_batch.h"
 
 namespace stipple {
 namespace {
@@ -59,8 +58,8 @@ TEST(Triangles, EndForWhatIsNoPolygon) {
 TEST(SceneBatch, RectanglesAndTextsAreTwoTrianglesEach) {
   FixedTexts texts;
   std::vector<Corner> corners;
-  AppendLayer({"", {RectShape{1, 2, 3, 4, kInk, {}}, TextShape{50, 60, "abc", {.size = 12}}}}, false,
-              texts, corners);
+  AppendLayer({"", {RectShape{1, 2, 3, 4, kInk, {}}, TextShape{50, 60, "abc", {.size = 12}}}},
+              false, texts, corners);
   ASSERT_EQ(corners.size(), 12u);
   EXPECT_EQ(corners[0].x, 1);
   EXPECT_EQ(corners[2].x, 4);

@@ -17,7 +17,9 @@ namespace {
 class ControllerTest : public ::testing::Test {
  protected:
   explicit ControllerTest(int ranks = 4)
-      : source(ranks), state(source.EndSeconds(), source.Ranks()), scene(source),
+      : source(ranks),
+        state(source.EndSeconds(), source.Ranks()),
+        scene(source),
         controller(source, state, scene) {
     Draw();
   }
@@ -83,7 +85,9 @@ TEST_F(ControllerTest, DraggingWithTheOtherButtonsMovesWithThePointer) {
 }
 
 TEST_F(ControllerTest, AClickOnAStateTellsFunctionCallAndMessage) {
-  Click(In(2, 3.93));
+  const Point in_row = In(2, 3.93);
+  const GridRow& row = scene.timeline().grid().rows[*scene.timeline().RowOfRank(2)];
+  Click({in_row.x, row.y + 3});
   ASSERT_TRUE(state.picked);
   EXPECT_EQ(state.picked->rank, 2);
   ASSERT_TRUE(state.picked->visit);
@@ -218,7 +222,8 @@ TEST_F(ControllerTest, TheManualListsTheseKeys) {
   for (const KeyRow& row : Keys()) expect(row.shown, row.does);
   for (const MouseRow& row : MouseActions()) expect(row.shown, row.does);
   std::size_t in_manual = 0;
-  for (std::size_t at = manual.find("\n| "); at != std::string::npos; at = manual.find("\n| ", at + 1))
+  for (std::size_t at = manual.find("\n| "); at != std::string::npos;
+       at = manual.find("\n| ", at + 1))
     ++in_manual;
   EXPECT_EQ(in_manual, rows + 2) << "two headings";
 }
@@ -228,8 +233,11 @@ TEST_F(ControllerTest, EverythingFitsAtAnySize) {
     const testing::FakeSource many(ranks);
     ViewState shown(many.EndSeconds(), many.Ranks());
     WindowScene picture(many);
-    for (const auto& [width, height] : {std::pair(1920.0, 1080.0), {1440.0, 960.0}, {800.0, 600.0},
-                                        {320.0, 200.0}, {100.0, 50.0}}) {
+    for (const auto& [width, height] : {std::pair(1920.0, 1080.0),
+                                        {1440.0, 960.0},
+                                        {800.0, 600.0},
+                                        {320.0, 200.0},
+                                        {100.0, 50.0}}) {
       picture.Resize(width, height);
       picture.Update(shown, false);
       const WindowLayout& layout = picture.layout();

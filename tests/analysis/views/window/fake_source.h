@@ -29,8 +29,8 @@ class FakeSource : public WindowSource {
     for (const int rank : ranks_) {
       TimelineRow row{std::to_string(rank), rank, false, {}};
       for (std::size_t c = 0; c < columns; ++c) {
-        const double at =
-            begin_s + (end_s - begin_s) * (static_cast<double>(c) + 0.5) / static_cast<double>(columns);
+        const double at = begin_s + (end_s - begin_s) * (static_cast<double>(c) + 0.5) /
+                                        static_cast<double>(columns);
         StateShares shares{};
         shares[at - std::floor(at) < 0.9 ? 0 : 2] = 1;
         row.columns.push_back(shares);
@@ -98,8 +98,11 @@ class FakeSource : public WindowSource {
     for (std::int64_t s = 0; s < 10; ++s)
       for (const int rank : ranks_) {
         const int to = (rank + 1) % static_cast<int>(ranks_.size());
-        RunMessage m{number++, rank,  to, 7, 100, s * kSecond + kSend, s * kSecond,
-                     s * kSecond + kSend + 50'000'000, "MPI_Send", "MPI_Recv"};
+        RunMessage m{number++,    rank,
+                     to,          7,
+                     100,         s * kSecond + kSend,
+                     s * kSecond, s * kSecond + kSend + 50'000'000,
+                     "MPI_Send",  "MPI_Recv"};
         if (m.receive_ns >= begin_ns && m.send_ns <= end_ns) found.push_back(m);
       }
     return found;

@@ -37,12 +37,24 @@ TEST(ViewState, WhateverIsDoneTheViewStaysInTheRunAndIsNeitherTooShortNorTooLong
     for (int i = 0; i < 3000; ++i) {
       const double a = any(random) * 1.4 * run_s - 0.2 * run_s, b = any(random) * run_s;
       switch (random() % 6) {
-        case 0: state.Show({a, b}); break;
-        case 1: state.ZoomAbout(a, any(random) * 2); break;
-        case 2: state.PanBy(a - b); break;
-        case 3: state.Back(); break;
-        case 4: state.Forward(); break;
-        default: state.Centre({b, b + any(random) * 1e-6}); break;
+        case 0:
+          state.Show({a, b});
+          break;
+        case 1:
+          state.ZoomAbout(a, any(random) * 2);
+          break;
+        case 2:
+          state.PanBy(a - b);
+          break;
+        case 3:
+          state.Back();
+          break;
+        case 4:
+          state.Forward();
+          break;
+        default:
+          state.Centre({b, b + any(random) * 1e-6});
+          break;
       }
       const TimeSpan& visible = state.visible();
       ASSERT_GE(visible.begin_s, 0);

@@ -33,7 +33,8 @@ StreamWriter RankStream(std::int32_t rank, std::int32_t ranks, std::uint64_t ste
   for (std::uint64_t s = 0; s < steps; ++s) {
     const std::uint64_t begin = kBegin + 10 + s * kStep;
     const std::uint64_t busy =
-        kStep / 2 + static_cast<std::uint64_t>((rank * 7 + static_cast<std::int32_t>(s)) % 10) * kStep / 40;
+        kStep / 2 +
+        static_cast<std::uint64_t>((rank * 7 + static_cast<std::int32_t>(s)) % 10) * kStep / 40;
     stream.Enter(kCompute, begin);
     for (std::uint64_t k = 0; k < 3; ++k) {
       const bool rare = rank == 1 && s == 5 && k == 1;
@@ -65,8 +66,7 @@ int main(int argc, char** argv) {
   const int ranks = std::atoi(argv[2]), steps = std::atoi(argv[3]);
   std::filesystem::create_directories(directory);
   for (int rank = 0; rank < ranks; ++rank) {
-    const std::string bytes =
-        RankStream(rank, ranks, static_cast<std::uint64_t>(steps)).Bytes();
+    const std::string bytes = RankStream(rank, ranks, static_cast<std::uint64_t>(steps)).Bytes();
     std::ofstream file(directory + "/computer." + std::to_string(rank + 1) + ".1.stream",
                        std::ios::binary);
     file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
