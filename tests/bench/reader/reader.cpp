@@ -248,7 +248,7 @@ int Main(std::uint64_t events, const std::string& directory, const std::string& 
 int main(int argc, char** argv) {
   // --write EVENTS PATH: only the archive, for other benchmarks.
   if (argc == 4 && std::strcmp(argv[1], "--write") == 0) {
-    stipple::WriteArchive(argv[3], static_cast<std::uint64_t>(std::atof(argv[2])));
+    stipple::WriteWalk(argv[3], static_cast<std::uint64_t>(std::atof(argv[2])));
     return 0;
   }
   const double events = argc > 1 ? std::atof(argv[1]) : 1e8;
