@@ -4,19 +4,17 @@
 #ifndef STIPPLE_ANALYSIS_VIEWS_WINDOW_WINDOW_CANVAS_H
 #define STIPPLE_ANALYSIS_VIEWS_WINDOW_WINDOW_CANVAS_H
 
-#include <vtkNew.h>
-#include <vtkRenderWindow.h>
-#include <vtkRenderer.h>
-#include <vtkSmartPointer.h>
-
+#include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "analysis/stats/window_source.h"
 #include "analysis/views/window/controller.h"
 #include "analysis/views/window/view_state.h"
-#include "analysis/views/window/window_item.h"
 #include "analysis/views/window/window_scene.h"
+
+class vtkRenderWindow;
 
 namespace stipple {
 
@@ -28,20 +26,19 @@ class WindowCanvas {
   WindowCanvas& operator=(const WindowCanvas&) = delete;
 
   void Render();
-  vtkRenderWindow* window() { return window_; }
+  vtkRenderWindow* window();
   ViewState& state() { return state_; }
   WindowScene& scene() { return scene_; }
   Controller& controller() { return controller_; }
-  std::size_t corner_count() const { return item_->corner_count(); }
+  std::size_t corner_count() const;  // of the triangles drawn
 
  private:
   const WindowSource& source_;
   ViewState state_;
   WindowScene scene_;
   Controller controller_;
-  vtkSmartPointer<vtkRenderWindow> window_;
-  vtkSmartPointer<vtkRenderer> renderer_;
-  vtkNew<WindowItem> item_;
+  struct Vtk;  // so that who draws needs no header of VTK's
+  std::unique_ptr<Vtk> vtk_;
   std::string title_;
 };
 

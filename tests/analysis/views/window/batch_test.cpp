@@ -101,8 +101,11 @@ TEST(SceneBatch, WithoutColoursEveryInkIsGreyAndStatesStayApart) {
   for (std::size_t i = 0; i < corners.size(); i += 6) {
     EXPECT_EQ(corners[i].red, corners[i].green);
     EXPECT_EQ(corners[i].red, corners[i].blue);
-    for (const auto& other : seen)
-      if (i < 24) EXPECT_NE(other, std::pair(corners[i].ink, static_cast<int>(corners[i].red)));
+    for (const auto& other : seen) {
+      if (i < 24) {
+        EXPECT_NE(other, std::pair(corners[i].ink, static_cast<int>(corners[i].red)));
+      }
+    }
     seen.emplace_back(corners[i].ink, corners[i].red);
   }
 }

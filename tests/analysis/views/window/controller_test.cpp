@@ -251,9 +251,10 @@ TEST_F(ControllerTest, EverythingFitsAtAnySize) {
         EXPECT_LE(display.area.bottom(), layout.height);
       }
       const RowGrid& grid = picture.timeline().grid();
-      if (height >= 600)
+      if (height >= 600) {
         EXPECT_LE(grid.rows.front().y + grid.height + kAxisHeight, layout.timeline.bottom() + 1)
             << ranks << ' ' << height;
+      }
     }
   }
 }
