@@ -206,7 +206,7 @@ class Resolution {
 
   /// `call`: where to look for the MPI call, from one moment to a later one.
   State StateAt(const Location& l, std::int64_t now_ns, std::size_t& call) const {
-    const std::vector<MpiCall>& calls = analysis_.mpi.calls;
+    const std::span<const MpiCall> calls(analysis_.mpi.calls);
     while (call < calls.size() &&
            (calls[call].location < l.index ||
             (calls[call].location == l.index && calls[call].end_ns < now_ns)))
@@ -214,7 +214,7 @@ class Resolution {
     if (call < calls.size() && calls[call].location == l.index && calls[call].begin_ns <= now_ns)
       return now_ns < calls[call].begin_ns + analysis_.waits[call].idle_ns ? State::kIdle
                                                                            : State::kMessage;
-    const std::vector<CallSpan>& kernel = analysis_.kernel[l.index];
+    const std::span<const CallSpan> kernel(analysis_.kernel[l.index]);
     const auto span = std::ranges::upper_bound(kernel, now_ns, {}, &CallSpan::end_ns);
     return span != kernel.end() && span->begin_ns <= now_ns ? State::kSystem : State::kUser;
   }
