@@ -180,8 +180,7 @@ class Splitter {
     for (const Location& l : analysis_.trace.locations()) {
       if (r == regions.size() || !l.IsMain() || l.rank != regions[r].rank) continue;
       for (const RegionTime& t : analysis_.profiles[l.index])
-        regions[r].parts.push_back(
-            {t.region, t.exclusive_ns * 1e-9, static_cast<std::int64_t>(t.calls)});
+        regions[r].parts.push_back({t.region, t.exclusive_ns * 1e-9});
       ++r;
     }
   }

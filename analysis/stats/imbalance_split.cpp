@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <set>
 
 #include "analysis/stats/analysis.h"
 #include "analysis/stats/number.h"
@@ -26,13 +27,41 @@ double AboveMean(const std::vector<RankStates>& states, const RankStates& busies
   return Seconds(of(busiest)) - sum / static_cast<double>(states.size());
 }
 
-/// Work of one region.
+/// Work in one region: of the busiest rank, and of all.
 struct RegionWork {
   double own_s = 0;
   double own_calls = 0;
   double all_s = 0;
   double all_calls = 0;
+
+  void Add(bool own, double seconds, double calls) {
+    all_s += seconds;
+    all_calls += calls;
+    if (!own) return;
+    own_s += seconds;
+    own_calls += calls;
+  }
+  double AboveMean(double ranks) const { return own_s - all_s / ranks; }
+  /// The part of that which comes of visits above the mean, each of mean length.
+  double OfMoreVisits(double ranks) const {
+    return all_calls > 0 ? (own_calls - all_calls / ranks) * all_s / all_calls : 0;
+  }
 };
+using WorkByRegion = std::map<std::uint32_t, RegionWork>;
+
+/// Of the whole run.
+WorkByRegion WorkInRun(const Analysis& analysis, int busiest,
+                       std::span<const RankRegions> regions) {
+  std::set<int> ranks;
+  for (const RankRegions& r : regions) ranks.insert(r.rank);
+  WorkByRegion work;
+  for (const Location& l : analysis.trace.locations()) {
+    if (!l.IsMain() || !ranks.contains(l.rank)) continue;
+    for (const RegionTime& t : analysis.profiles[l.index])
+      work[t.region].Add(l.rank == busiest, t.exclusive_ns * 1e-9, static_cast<double>(t.calls));
+  }
+  return work;
+}
 
 /// A sum over regions, and the region with most of it.
 struct RegionSum {
@@ -47,28 +76,28 @@ struct RegionSum {
   }
 };
 
-/// What comes of more visits, and what of longer ones.
-std::pair<RegionSum, RegionSum> WorkOf(const Trace& trace, int busiest,
+/// What comes of more visits, and what of longer ones. A visit may be longer than a phase, so which
+/// it is is told by the run: there the visits of a region are above the mean in number, in length,
+/// or partly in both, and its time in the phase is divided alike.
+std::pair<RegionSum, RegionSum> WorkOf(const Analysis& analysis, int busiest,
                                        std::span<const RankRegions> regions) {
-  std::map<std::uint32_t, RegionWork> work;
+  WorkByRegion in_phase;
   for (const RankRegions& rank : regions)
-    for (const RegionPart& p : rank.parts) {
-      if (trace.regions()[p.region].kind == RegionKind::kMpi) continue;
-      RegionWork& w = work[p.region];
-      w.all_s += p.seconds;
-      w.all_calls += static_cast<double>(p.calls);
-      if (rank.rank != busiest) continue;
-      w.own_s += p.seconds;
-      w.own_calls += static_cast<double>(p.calls);
-    }
+    for (const RegionPart& p : rank.parts)
+      if (analysis.trace.regions()[p.region].kind != RegionKind::kMpi)
+        in_phase[p.region].Add(rank.rank == busiest, p.seconds, 0);
+  WorkByRegion in_run = WorkInRun(analysis, busiest, regions);
   RegionSum more;
   RegionSum dearer;
   const auto ranks = static_cast<double>(regions.size());
-  for (const auto& [region, w] : work) {
-    const double visit_s = w.all_calls > 0 ? w.all_s / w.all_calls : 0;
-    const double more_s = (w.own_calls - w.all_calls / ranks) * visit_s;
-    more.Add(region, more_s);
-    dearer.Add(region, w.own_s - w.all_s / ranks - more_s);
+  for (const auto& [region, work] : in_phase) {
+    const double above_s = work.AboveMean(ranks);
+    const RegionWork& run = in_run[region];
+    const double run_above_s = run.AboveMean(ranks);
+    const double share =
+        above_s * run_above_s > 0 ? std::clamp(run.OfMoreVisits(ranks) / run_above_s, 0.0, 1.0) : 0;
+    more.Add(region, above_s * share);
+    dearer.Add(region, above_s * (1 - share));
   }
   return {more, dearer};
 }
@@ -102,7 +131,7 @@ std::vector<SplitPart> SplitOf(const Analysis& analysis, const Selection& select
   in_phase.ranks = std::move(ranks);
   const std::vector<RankStates> states = StatesOf(analysis, in_phase);
   const RankStates& busiest = *std::ranges::max_element(states, {}, &RankStates::user_ns);
-  const auto [more, dearer] = WorkOf(analysis.trace, busiest.rank, regions);
+  const auto [more, dearer] = WorkOf(analysis, busiest.rank, regions);
   const double user_s = AboveMean(states, busiest, [](const RankStates& s) { return s.user_ns; });
   const double span_s = Seconds(std::min(analysis.trace.SpanNs(), selection.end_ns) -
                                 std::max<std::int64_t>(0, selection.begin_ns));

@@ -4,7 +4,8 @@
 // In each phase (phases.h) the rank that computes longest is compared with the mean of all. Its
 // time divides into the four states, so does theirs, and what it has more in one it has less in
 // others:
-//   more-work     it entered functions more often: visits above the mean x mean time of a visit
+//   more-work     it entered functions more often: visits above the mean x mean time of a visit, as
+//                 in the whole run (a visit may be longer than a phase)
 //   dearer-work   its visits took longer: the rest of its computation above the mean
 //   system        it was longer in the kernel, or off its processor
 //   messages      it was longer in MPI calls, without waiting

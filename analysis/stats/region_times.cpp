@@ -32,7 +32,6 @@ class RegionTimesVisitor {
     Spend(ticks);
     stack_.Function(region, leave);
     Look();
-    if (!leave) ++sums_of_[inner_].calls;
   }
   void Record(const EventWord* record, std::uint64_t ticks) {
     if (ticks >= next_ticks_) Pass(ticks);
@@ -56,16 +55,14 @@ class RegionTimesVisitor {
       for (std::size_t i = 0; i < sums_[g].size(); ++i) {
         const Sum& sum = sums_[g][i];
         const std::uint64_t ticks = groups_[g] == TimeGoesTo::kCaller ? sum.as_caller : sum.inner;
-        if (ticks == 0 && sum.calls == 0) continue;
-        parts[g].push_back({process_.regions[regions_[i]],
-                            static_cast<double>(ticks) * ns_per_tick * 1e-9,
-                            static_cast<std::int64_t>(sum.calls)});
+        if (ticks == 0) continue;
+        parts[g].push_back(
+            {process_.regions[regions_[i]], static_cast<double>(ticks) * ns_per_tick * 1e-9});
       }
     return parts;
   }
 
  private:
-  static constexpr std::size_t kMostOpen = 64;  // deeper ones are not counted
   static constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
@@ -78,7 +75,6 @@ class RegionTimesVisitor {
   struct Sum {
     std::uint64_t inner = 0;      // ticks in which the region was the innermost
     std::uint64_t as_caller = 0;  // and in which it was the innermost that is not MPI's
-    std::uint64_t calls = 0;
   };
 
   std::uint32_t IndexOf(std::uint32_t region) {
@@ -116,17 +112,6 @@ class RegionTimesVisitor {
     }
   }
 
-  /// Visits that are open when a span begins belong to it, too.
-  void CountOpen(std::vector<Sum>& sums) {
-    const std::span<const std::uint32_t> frames = stack_.frames();
-    const std::size_t count = std::min(frames.size(), kMostOpen);
-    for (const std::uint32_t region : frames.last(count)) {
-      const std::uint32_t index = IndexOf(region);
-      if (index >= sums.size()) sums.resize(index + 1);
-      ++sums[index].calls;
-    }
-  }
-
   void Pass(std::uint64_t now) {
     while (next_ < edges_.size() && edges_[next_].ticks <= now) {
       const Edge& edge = edges_[next_++];
@@ -137,9 +122,7 @@ class RegionTimesVisitor {
         const Sum& s = sums_of_[i];
         sums[i].inner += edge.end ? s.inner : -s.inner;
         sums[i].as_caller += edge.end ? s.as_caller : -s.as_caller;
-        sums[i].calls += edge.end ? s.calls : -s.calls;
       }
-      if (!edge.end) CountOpen(sums);
     }
     next_ticks_ = next_ < edges_.size() ? edges_[next_].ticks : kNever;
   }

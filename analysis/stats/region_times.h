@@ -36,7 +36,6 @@ struct RegionQuestion {
 struct RegionPart {
   std::uint32_t region = 0;  // of the archive
   double seconds = 0;
-  std::int64_t calls = 0;  // visits in the spans, those open at their begins included
 };
 
 /// By location and group: the regions met, in order of first meeting. Time outside any region has
