@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <span>
@@ -72,7 +73,7 @@ std::vector<std::string> Split(std::string_view text) {
 
 struct PlotOptions {
   std::string archive, view, tables, output, x, y;
-  double at_s = std::numeric_limits<double>::infinity();
+  double at_s = std::numeric_limits<double>::quiet_NaN();
   bool mono = false;
   SelectionOptions selected;
 };
@@ -129,6 +130,8 @@ struct Plot {
     input.timeline = TimelineOf(analysis, begin_s, std::max(begin_s, end_s),
                                 // Tables need the ranks' names and the span only.
                                 choice.fits == nullptr ? kColumns : 1);
+    // At the end of a run nothing happens any more.
+    if (std::isnan(input.at_s)) input.at_s = (input.timeline.begin_s + input.timeline.end_s) / 2;
     KeepRanks();
     input.zoomed = !selection.WholeTime();
     if (input.zoomed && choice.fits == nullptr)

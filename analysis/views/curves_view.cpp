@@ -76,7 +76,7 @@ void AddRanks(Panel& panel, const SeriesColumn& column, const std::vector<Curve>
   const bool host = HasHost(column.ranks);
   if (curves.size() <= kMostRankLines) {
     // A rank has one colour; of several columns the later ones say which they are.
-    const bool dashed = column.column == "since_start", first = panel.lines.empty();
+    const bool dashed = column.column.starts_with("since_start"), first = panel.lines.empty();
     for (std::size_t i = 0; i < curves.size(); ++i) {
       std::string label = RowLabel(column.ranks[i], host);
       if (!first) label += ", " + WordsFor(column.column);
@@ -85,7 +85,7 @@ void AddRanks(Panel& panel, const SeriesColumn& column, const std::vector<Curve>
     return;
   }
   const Spread spread(curves);
-  const bool dashed = column.column == "since_start";
+  const bool dashed = column.column.starts_with("since_start");
   panel.lines.push_back({"mean " + WordsFor(column.column), spread.mean,
                          dashed ? kInk : ColoursOf(column.column, panel.lines.size()).line,
                          dashed});
@@ -105,7 +105,7 @@ void AddColumn(Panel& panel, const SeriesColumn& column, const TimeAxis& axis, s
     panel.band = "least to most";
     return;
   }
-  const bool dashed = column.column == "since_start";
+  const bool dashed = column.column.starts_with("since_start");
   panel.lines.push_back({WordsFor(column.column), curves.front(),
                          dashed ? kInk : ColoursOf(column.column, panel.lines.size()).line,
                          dashed});

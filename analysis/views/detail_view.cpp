@@ -118,14 +118,16 @@ RowGrid GridOf(const ViewInput& input, const VisitDepths& depths) {
   RowGridLimits limits = DetailLimits(detail.rows.size());
   if (depths.count == 0) return MakeRowGrid(detail.rows, CulpritOf(input), limits);
   constexpr double kStates = 20, kBetween = 26;
-  limits.max_pitch = kStates + depths.Height() + kBetween;
+  limits.max_pitch = kStates + kBetween;
   limits.max_height = 1e5;
   limits.fill = kStates / limits.max_pitch;
   RowGrid grid = MakeRowGrid(detail.rows, CulpritOf(input), limits);
-  // The host's row is apart already.
-  for (std::size_t i = 0; i < grid.rows.size(); ++i)
-    grid.rows[i].y = limits.top + static_cast<double>(i) * grid.pitch;
-  grid.height = static_cast<double>(grid.rows.size() - 1) * grid.pitch + kStates;
+  double y = limits.top;
+  for (std::size_t i = 0; i < grid.rows.size(); ++i) {
+    grid.rows[i].y = y;
+    y += kStates + depths.HeightOf(i) + kBetween;
+  }
+  grid.height = grid.rows.back().y + kStates - limits.top;
   return grid;
 }
 
@@ -180,7 +182,8 @@ Scene DetailScene(const ViewInput& input, double width) {
   const RowGrid grid = GridOf(input, depths);
   const TimeAxis axis{detail.begin_s, detail.end_s, AxisLeft(grid), width};
   const bool marks = grid.pitch >= kLeastPitchForMarks && !detail.messages.empty();
-  double bottom = grid.rows.back().y + grid.rows.back().height + 6 + depths.Height();
+  double bottom =
+      grid.rows.back().y + grid.rows.back().height + 6 + depths.HeightOf(grid.rows.size() - 1);
   scene.title = "Detail " + FormatSpan(detail.begin_s, detail.end_s);
   scene.description =
       fmt::format("States of each {} with {} messages as lines from sender to receiver.",

@@ -101,7 +101,7 @@ struct Drawing {
       tip += fmt::format(", {} calls", ValueText(Quantity::kCount, node.calls));
     boxes.shapes.emplace_back(RectShape{x, y, std::max(0.5, width - (width > 3 ? 1 : 0.2)),
                                         kRow - 1, ColourOfName(name), std::move(tip)});
-    const std::string text = ShortenEnd(name, width - 10, kTextSize);
+    const std::string text = ShortenName(name, width - 10, kTextSize);
     if (!text.empty())
       names.shapes.emplace_back(
           TextShape{x + 5, y + kRow / 2 - 0.5, text, {.size = kTextSize, .colour = kOnPale}});

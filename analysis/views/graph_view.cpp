@@ -230,7 +230,7 @@ Layer Labels(const Plane& plane, std::vector<Item> items, int culprit, LabelRoom
   for (const Item& item : items) {
     const bool blame = item.rank >= 0 && item.rank == culprit;
     const TextStyle style{.size = 12, .colour = blame ? kAccent : kInk, .bold = blame};
-    const std::string text = ShortenEnd(item.label, 180, 12 * 1.12);
+    const std::string text = ShortenName(item.label, 180, 12 * 1.12);
     if (text.empty()) continue;
     if (const auto at = room.Take(plane.At(item), text, style, LabelRoom::Lines::kCrossed))
       layer.shapes.emplace_back(TextShape{at->x, at->y, text, style});

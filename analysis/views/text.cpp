@@ -93,4 +93,14 @@ std::string ShortenEnd(std::string_view utf8, double width, double size) {
   return {};
 }
 
+std::string ShortenName(std::string_view utf8, double width, double size) {
+  std::string_view rest = utf8;
+  while (TextWidth(rest, size) > width) {
+    const std::size_t scope = rest.find("::");
+    if (scope == rest.npos || scope + 2 >= rest.size()) break;
+    rest.remove_prefix(scope + 2);
+  }
+  return ShortenEnd(rest, width, size);
+}
+
 }  // namespace stipple

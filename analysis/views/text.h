@@ -20,6 +20,9 @@ std::string ShortenMiddle(std::string_view utf8, std::size_t characters);
 /// Keeps the beginning that fits into `width` pixels; empty when not even three letters do.
 std::string ShortenEnd(std::string_view utf8, double width, double size);
 
+/// A function's name in `width` pixels: without its outer scopes first, then its beginning.
+std::string ShortenName(std::string_view utf8, double width, double size);
+
 }  // namespace stipple
 
 #endif

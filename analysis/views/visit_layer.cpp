@@ -64,7 +64,14 @@ VisitDepths VisitDepthsOf(const ViewInput& input) {
   const std::uint32_t first = unchanged == 0 ? 0 : unchanged - 1;
   const auto share = static_cast<std::uint32_t>(kMostLines / rows);
   const std::uint32_t most = std::clamp<std::uint32_t>(share, 2, kMostDepths);
-  return {first, std::min(deepest + 1 - std::min(first, deepest), most)};
+  VisitDepths depths{first, std::min(deepest + 1 - std::min(first, deepest), most), {}};
+  for (const std::vector<VisitBar>& row : input.visits->rows) {
+    std::uint32_t lines = 0;
+    for (const VisitBar& visit : row)
+      if (visit.depth >= first) lines = std::max(lines, visit.depth - first + 1);
+    depths.lines.push_back(std::min(lines, depths.count));
+  }
+  return depths;
 }
 
 void AddVisits(const VisitBars& visits, std::size_t row, const VisitDepths& depths,
@@ -79,7 +86,7 @@ void AddVisits(const VisitBars& visits, std::size_t row, const VisitDepths& dept
     bars.shapes.emplace_back(
         RectShape{left, top, right - left - gap, kVisitLine - 1, ColourOfName(name),
                   fmt::format("{}: {}", name, FormatSeconds(visit.end_s - visit.begin_s))});
-    const std::string text = ShortenEnd(name, right - left - 8, kTextSize);
+    const std::string text = ShortenName(name, right - left - 8, kTextSize);
     if (!text.empty())
       names.shapes.emplace_back(TextShape{
           left + 4, top + (kVisitLine - 1) / 2, text, {.size = kTextSize, .colour = kOnPale}});

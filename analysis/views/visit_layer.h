@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
+#include <vector>
 
 #include "analysis/views/axis.h"
 #include "analysis/views/row_grid.h"
@@ -20,8 +21,11 @@ inline constexpr double kVisitLine = 15;  // pixels of one depth
 /// out, but for the innermost of them.
 struct VisitDepths {
   std::uint32_t first = 0;
-  std::uint32_t count = 0;  // 0: no visits are drawn
-  double Height() const { return count * kVisitLine; }
+  std::uint32_t count = 0;             // 0: no visits are drawn
+  std::vector<std::uint32_t> lines{};  // of each row
+  double HeightOf(std::size_t row) const {
+    return row < lines.size() ? lines[row] * kVisitLine : 0;
+  }
 };
 
 /// None where there are no visits or too many rows for them.

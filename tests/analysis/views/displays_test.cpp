@@ -10,6 +10,7 @@
 #include "analysis/views/label_room.h"
 #include "analysis/views/sheet.h"
 #include "analysis/views/view_list.h"
+#include "sample_inputs.h"
 #include "sample_tables.h"
 
 namespace stipple {
@@ -129,6 +130,51 @@ TEST(Displays, EachShapeOfTableFitsSomeAndNotAll) {
     EXPECT_GT(fitting, 0U) << table.name;
     EXPECT_LT(fitting, Views().size()) << table.name;
   }
+}
+
+/// Nested visits of a few functions on every rank, the outermost all the time.
+VisitBars SampleVisits(const Timeline& period) {
+  VisitBars bars{{"main", "Render", "TraceRay", "MPI_Recv"}, {}};
+  for (std::size_t row = 0; row < period.rows.size(); ++row) {
+    std::vector<VisitBar>& visits = bars.rows.emplace_back();
+    visits.push_back({period.begin_s, period.end_s, 0, 0});
+    const double length = (period.end_s - period.begin_s) / 20;
+    for (int i = 0; i < 20; ++i) {
+      const double begin = period.begin_s + i * length;
+      visits.push_back({begin, begin + 0.9 * length, 1, 1});
+      for (std::uint32_t depth = 2; depth < 30; ++depth)
+        visits.push_back({begin, begin + 0.8 * length / depth, depth, 2 + depth % 2});
+    }
+  }
+  return bars;
+}
+
+TEST(TimelineZoomedIn, IsLegibleWithMessagesAndFunctions) {
+  for (const bool host : {false, true})
+    for (const int nodes : {1, 2, 5, 15, 64}) {
+      const ReportInput report = SampleReport(nodes, host);
+      const VisitBars visits = SampleVisits(report.detail);
+      ViewInput input = ViewsOfSample(report);
+      EXPECT_EQ(Problem(OnSheet(TimelineOrDetailView(input))), "") << nodes;
+      const double without = TimelineOrDetailView(input).height;
+      input.visits = &visits;
+      const Scene scene = TimelineOrDetailView(input);
+      EXPECT_EQ(Problem(OnSheet(scene)), "") << nodes << " with functions";
+      if (nodes < 16) {
+        EXPECT_GT(scene.height, without) << nodes;
+      }
+    }
+}
+
+TEST(TimelineZoomedIn, TooManyMessagesAreALoadAndNoLines) {
+  ReportInput report = SampleNoise(5);
+  report.detail.message_count = 3000;
+  report.detail.sent_bytes.assign(200, 1e6);
+  const Scene scene = TimelineOrDetailView(ViewsOfSample(report));
+  EXPECT_EQ(Problem(OnSheet(scene)), "");
+  bool load = false;
+  for (const Layer& layer : scene.layers) load = load || layer.name == "band";
+  EXPECT_TRUE(load);
 }
 
 }  // namespace
