@@ -26,10 +26,10 @@ class Chooser {
       Mark(s.end_call, WaitKind::kLateReceiver, s.channel.receiver, r.post_ns);
     }
     for (const ProbeEvent& p : mpi_.probes) {
-      const auto same = std::ranges::equal_range(mpi_.sends, p.channel, {}, &SendEvent::channel);
-      for (const SendEvent& s : same)
-        if (selection_.HasMessage(s.bytes, s.channel.tag))
-          Mark(p.call, WaitKind::kLateSender, s.channel.sender, s.enter_ns);
+      const auto* s = std::ranges::lower_bound(mpi_.sends, p.channel, {}, &SendEvent::channel);
+      for (; s != mpi_.sends.end() && s->channel == p.channel; ++s)
+        if (selection_.HasMessage(s->bytes, s->channel.tag))
+          Mark(p.call, WaitKind::kLateSender, s->channel.sender, s->enter_ns);
     }
     for (std::size_t c = 0; c < waits_.size(); ++c)
       if (!chosen_[c]) waits_[c] = {};

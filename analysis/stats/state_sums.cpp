@@ -4,6 +4,16 @@
 #include <algorithm>
 
 namespace stipple {
+namespace {
+
+/// Those of one location; calls are by location.
+std::span<const MpiCall> CallsOf(std::span<const MpiCall> calls, std::size_t location) {
+  const auto first = std::ranges::lower_bound(calls, location, {}, &MpiCall::location);
+  const auto last = std::ranges::upper_bound(calls, location, {}, &MpiCall::location);
+  return {first, last};
+}
+
+}  // namespace
 
 StateSums::StateSums(const Analysis& analysis, const Location& main,
                      std::span<const std::int64_t> moments)
@@ -11,7 +21,7 @@ StateSums::StateSums(const Analysis& analysis, const Location& main,
   // As long as this lasts sums_ holds what lies between a moment and the one before.
   Add(main.begin_ns, main.end_ns, State::kUser, 1);
   const std::span<const MpiCall> calls(analysis.mpi.calls);
-  const auto here = std::ranges::equal_range(calls, main.index, {}, &MpiCall::location);
+  const auto here = CallsOf(calls, main.index);
   for (const MpiCall& call : here) {
     const std::int64_t idle_ns =
         analysis.waits[static_cast<std::size_t>(&call - calls.data())].idle_ns;

@@ -301,7 +301,7 @@ Scene MatrixScene(Scene scene, const Table* table, const MatrixKind& kind) {
 }  // namespace
 
 bool FitsMatrix(const Table& table) {
-  return table.shape == TableShape::kMatrix && table.columns.size() > 1;
+  return table.shape == TableShape::kMatrix;
 }
 
 Scene MessageMatrixView(const ViewInput& input) {

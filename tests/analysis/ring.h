@@ -22,41 +22,40 @@ enum : std::uint32_t { kMain = 1, kWork, kSend, kReceive, kBarrier };
 /// again; now and then there is a barrier.
 inline StreamWriter RankOfRing(std::int32_t rank, std::int32_t size, std::uint64_t rounds,
                                std::uint64_t seed) {
-  using namespace ring;
   StreamWriter s(static_cast<std::uint32_t>(rank + 1));
   s.World(rank, size);
-  s.Region(kMain, "main");
-  s.Region(kWork, "work" + std::to_string(seed % 3));
-  s.Region(kSend, "MPI_Send", RegionKind::kMpi);
-  s.Region(kReceive, "MPI_Recv", RegionKind::kMpi);
-  s.Region(kBarrier, "MPI_Barrier", RegionKind::kMpi);
+  s.Region(ring::kMain, "main");
+  s.Region(ring::kWork, "work" + std::to_string(seed % 3));
+  s.Region(ring::kSend, "MPI_Send", RegionKind::kMpi);
+  s.Region(ring::kReceive, "MPI_Recv", RegionKind::kMpi);
+  s.Region(ring::kBarrier, "MPI_Barrier", RegionKind::kMpi);
   s.Name(1, "round");
   std::mt19937_64 random(seed * 1000 + static_cast<std::uint64_t>(rank));
   std::uint64_t now = 1000;
   const auto next = [&] { return now += 1 + random() % 200; };
   s.NewChunk(now);
-  s.Enter(kMain, now);
+  s.Enter(ring::kMain, now);
   for (std::uint64_t round = 0; round < rounds; ++round) {
     now = std::max(now, 1000 + round * 1000);
-    s.Enter(kWork, next());
+    s.Enter(ring::kWork, next());
     if (round % 7 == 0) s.Append(Mark{0, now, 1, 0});
     if (round % 11 == 0) {
       const std::uint64_t enter = next();
       s.Append(SystemCall{0, next(), enter, 0, 0, 0});
     }
-    s.Leave(kWork, next());
-    s.Enter(kSend, next());
+    s.Leave(ring::kWork, next());
+    s.Enter(ring::kSend, next());
     s.Append(MpiSend{0, now, 8 + random() % 100, 1, (rank + 1) % size, 5, 0});
-    s.Leave(kSend, next());
-    s.Enter(kReceive, next());
+    s.Leave(ring::kSend, next());
+    s.Enter(ring::kReceive, next());
     s.Append(MpiReceive{0, next(), 8, 1, (rank + size - 1) % size, 5, 0});
-    s.Leave(kReceive, next());
+    s.Leave(ring::kReceive, next());
     if (round % 5 != 0) continue;
-    s.Enter(kBarrier, next());
-    s.Append(MpiCollective{0, now, 0, 0, 1, -1, kBarrier, 0});
-    s.Leave(kBarrier, next());
+    s.Enter(ring::kBarrier, next());
+    s.Append(MpiCollective{0, now, 0, 0, 1, -1, ring::kBarrier, 0});
+    s.Leave(ring::kBarrier, next());
   }
-  s.Leave(kMain, next());
+  s.Leave(ring::kMain, next());
   s.End(now);
   return s;
 }

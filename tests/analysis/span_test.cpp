@@ -222,9 +222,9 @@ TEST(Span, VisitsAreThoseThatLieInIt) {
   const Location& l = trace.locations().front();
   const VisitsOfSpan in = VisitsIn(trace, l, 250, 550, 10);
   ASSERT_EQ(in.visits.size(), 3U);
-  EXPECT_EQ(KeyOf(in.visits[0]), std::tuple(0, 550, 1U, 0U));  // its end is not known yet
+  EXPECT_EQ(KeyOf(in.visits[0]), std::tuple(0, 1000, 1U, 0U));  // its own ends
   EXPECT_EQ(KeyOf(in.visits[1]), std::tuple(300, 400, 3U, 1U));
-  EXPECT_EQ(KeyOf(in.visits[2]), std::tuple(500, 550, 2U, 1U));
+  EXPECT_EQ(KeyOf(in.visits[2]), std::tuple(500, 600, 2U, 1U));
   EXPECT_EQ(in.events, 3U);
   EXPECT_TRUE(in.complete);
   const VisitsOfSpan many = VisitsIn(trace, l, 0, 1000, 2);

@@ -140,9 +140,13 @@ TEST(Profile, PartsOfTheTimeSumToTheWhole) {
   double parts = 0;
   std::uint64_t calls = 0;
   for (std::int64_t begin = 0; begin < 8000; begin += 1000) {
-    const auto times = Profile(trace, {begin, begin + 1000 - 1, std::nullopt});
+    Selection part;
+    part.begin_ns = begin;
+    part.end_ns = begin + 1000 - 1;
+    const auto times = Profile(trace, part);
     calls += times[2].calls;
-    const auto exact = Profile(trace, {begin, begin + 1000, std::nullopt});
+    part.end_ns = begin + 1000;
+    const auto exact = Profile(trace, part);
     parts += exact[2].exclusive_ns;
   }
   const auto whole = Profile(trace, {});

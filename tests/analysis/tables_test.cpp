@@ -166,8 +166,9 @@ void ExpectSame(const Sums& whole, const Sums& parts, std::string_view table) {
           << table << ' ' << key << ' ' << v;
   }
   for (const auto& [key, values] : parts)
-    if (!whole.contains(key))
+    if (!whole.contains(key)) {
       for (const double v : values) EXPECT_EQ(v, 0) << table << ' ' << key;
+    }
 }
 
 TEST(Tables, SpansSideBySideSumUpToTheWhole) {
@@ -427,13 +428,16 @@ void ExpectFormats(const TableEntry& entry, const Table& table, bool promised) {
   ASSERT_FALSE(csv.empty()) << entry.name;
   std::string columns;
   for (const Column& c : table.columns) columns += (columns.empty() ? "" : " ") + c.name;
-  if (promised && kPromised.contains(entry.name)) EXPECT_EQ(columns, kPromised.at(entry.name));
+  if (promised && kPromised.contains(entry.name)) {
+    EXPECT_EQ(columns, kPromised.at(entry.name));
+  }
   ASSERT_EQ(csv.front().size(), table.columns.size()) << entry.name;
   ASSERT_EQ(csv.size(), table.rows.size() + 1) << entry.name;
   const std::string text = TableText(table);
-  if (table.shape != TableShape::kTree)
+  if (table.shape != TableShape::kTree) {
     EXPECT_EQ(std::ranges::count(text, '\n'), static_cast<std::ptrdiff_t>(table.rows.size()) + 1)
         << entry.name;
+  }
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
     ASSERT_EQ(csv[r + 1].size(), table.columns.size()) << entry.name;
     for (std::size_t c = 0; c < table.columns.size(); ++c) {

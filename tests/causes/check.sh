@@ -27,7 +27,7 @@ done
 wanted=" $* "
 work=$(mktemp -d)
 spinning=()
-trap 'kill "${spinning[@]}" 2>/dev/null; rm -rf "$work"' EXIT
+trap 'kill "${spinning[@]}" 2>/dev/null || true; rm -rf "$work"' EXIT
 for ((i = 0; i < load; ++i)); do
   while :; do :; done &
   spinning+=($!)

@@ -13,7 +13,7 @@ function make(name, attributes, text) {
   return element;
 }
 function makeSvg(name, attributes, text) {
-  var element = document.createElementNS("http://www.w3.org/2000/svg", name);
+  var element = document.createElementNS(document.querySelector("svg").namespaceURI, name);
   for (var key in attributes || {}) element.setAttribute(key, attributes[key]);
   if (text !== undefined) element.textContent = text;
   return element;

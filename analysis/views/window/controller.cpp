@@ -222,13 +222,46 @@ void Controller::ZoomToPicked() {
   state_.Show({span.begin_s - around, span.end_s + around});
 }
 
-void Controller::Do(Command command, std::string_view key) {
+/// Where the visible span is moved or stretched; false for other commands.
+bool Controller::Move(Command command) {
   const TimeSpan visible = state_.visible();
   const double middle = state_.has_cursor() && visible.Has(state_.cursor_s())
                             ? state_.cursor_s()
                             : (visible.begin_s + visible.end_s) / 2;
   switch (command) {
-    case Command::kNone:
+    case Command::kBack:
+      if (!state_.Back()) state_.message = "nothing to go back to";
+      return true;
+    case Command::kForward:
+      if (!state_.Forward()) state_.message = "nothing to go forward to";
+      return true;
+    case Command::kWhole:
+      state_.ShowAll();
+      return true;
+    case Command::kPanLeft:
+      state_.PanBy(-kKeyPan * visible.length());
+      return true;
+    case Command::kPanRight:
+      state_.PanBy(kKeyPan * visible.length());
+      return true;
+    case Command::kNearer:
+      state_.ZoomAbout(middle, kKeyFactor);
+      return true;
+    case Command::kFarther:
+      state_.ZoomAbout(middle, 1 / kKeyFactor);
+      return true;
+    case Command::kZoomToPicked:
+      ZoomToPicked();
+      return true;
+    default:
+      return false;
+  }
+}
+
+void Controller::Do(Command command, std::string_view key) {
+  if (Move(command)) return;
+  switch (command) {
+    default:
       break;
     case Command::kQuit:
       state_.quit = true;
@@ -238,30 +271,6 @@ void Controller::Do(Command command, std::string_view key) {
       break;
     case Command::kCancel:
       Cancel();
-      break;
-    case Command::kBack:
-      if (!state_.Back()) state_.message = "nothing to go back to";
-      break;
-    case Command::kForward:
-      if (!state_.Forward()) state_.message = "nothing to go forward to";
-      break;
-    case Command::kWhole:
-      state_.ShowAll();
-      break;
-    case Command::kPanLeft:
-      state_.PanBy(-kKeyPan * visible.length());
-      break;
-    case Command::kPanRight:
-      state_.PanBy(kKeyPan * visible.length());
-      break;
-    case Command::kNearer:
-      state_.ZoomAbout(middle, kKeyFactor);
-      break;
-    case Command::kFarther:
-      state_.ZoomAbout(middle, 1 / kKeyFactor);
-      break;
-    case Command::kZoomToPicked:
-      ZoomToPicked();
       break;
     case Command::kSearch:
       state_.typing = true;

@@ -40,6 +40,7 @@ class Controller {
  private:
   enum class Drag { kNone, kBand, kPan, kOverview };
   void Type(std::string_view key, char letter);
+  bool Move(Command command);
   void Do(Command command, std::string_view key);
   void Cancel();
   void ZoomToPicked();

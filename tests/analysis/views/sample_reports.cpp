@@ -29,7 +29,7 @@ int main(int argument_count, char** arguments) {
           << stipple::DrawSvg(scene, {.standalone = true});
     }
   }
-  for (const auto [a, b] : {std::pair(8, 8), std::pair(3, 1024)})
+  for (const auto& [a, b] : {std::pair(8, 8), std::pair(3, 1024)})
     std::ofstream(folder + "compare-" + std::to_string(b) + ".html")
         << stipple::ComparePage(stipple::SampleCompare(a, b));
   return 0;

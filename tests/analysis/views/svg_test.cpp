@@ -189,7 +189,7 @@ TEST(Compare, HeadlineNamesWhatChangedMost) {
 }
 
 TEST(Compare, SameInputGivesTheSameBytesBelowAMegabyte) {
-  for (const auto [a, b] : {std::pair(1, 1), std::pair(4, 8), std::pair(1000, 1024)}) {
+  for (const auto& [a, b] : {std::pair(1, 1), std::pair(4, 8), std::pair(1000, 1024)}) {
     const std::string page = ComparePage(SampleCompare(a, b));
     EXPECT_EQ(page, ComparePage(SampleCompare(a, b)));
     EXPECT_LE(page.size(), 1'000'000U) << a;

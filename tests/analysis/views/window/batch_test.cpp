@@ -58,7 +58,7 @@ TEST(Triangles, EndForWhatIsNoPolygon) {
 TEST(SceneBatch, RectanglesAndTextsAreTwoTrianglesEach) {
   FixedTexts texts;
   std::vector<Corner> corners;
-  AppendLayer({"", {RectShape{1, 2, 3, 4, kInk, {}}, TextShape{50, 60, "abc", {.size = 12}}}},
+  AppendLayer({"", {RectShape{1, 2, 3, 4, kInk, {}}, TextShape{50, 60, "abc", {.size = 12, .colour = kInk}}}},
               false, texts, corners);
   ASSERT_EQ(corners.size(), 12u);
   EXPECT_EQ(corners[0].x, 1);

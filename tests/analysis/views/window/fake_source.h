@@ -25,7 +25,9 @@ class FakeSource : public WindowSource {
   std::uint64_t EventCount() const override { return 40 * ranks_.size(); }
 
   Timeline StatesIn(double begin_s, double end_s, std::size_t columns) const override {
-    Timeline timeline{.begin_s = begin_s, .end_s = end_s};
+    Timeline timeline;
+    timeline.begin_s = begin_s;
+    timeline.end_s = end_s;
     for (const int rank : ranks_) {
       TimelineRow row{std::to_string(rank), rank, false, {}};
       for (std::size_t c = 0; c < columns; ++c) {
