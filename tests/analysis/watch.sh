@@ -66,13 +66,13 @@ if command -v script >/dev/null; then
       >/dev/null 2>&1 || fail "on a terminal: exit $?"
   python3 - <<'PY' || fail "what the terminal got"
 import re, sys
-text = open("typed", errors="replace").read()
+text = open("typed", errors="replace", newline="").read()
 assert "\x1b[?1049h" in text and text.index("\x1b[?1049h") < text.index("\x1b[H"), "second screen"
 assert text.index("\x1b[?1049l") > text.rindex("\x1b[H"), "first screen again"
 assert "\x1b[?25h" in text, "cursor"
 assert "\x1b[48;2;54;114;185m" in text, "the colour of user time"
 page = text.split("\x1b[H")[1].split("\x1b[?")[0]
-lines = [re.sub(r"\x1b\[[0-9;?]*[a-zA-Z]", "", l) for l in page.split("\r\n")]
+lines = [re.sub(r"\x1b\[[0-9;?]*[a-zA-Z]", "", l).rstrip("\r") for l in page.split("\r\n")]
 assert len(lines) <= 20, len(lines)
 assert all(len(l) <= 90 for l in lines), max(map(len, lines))
 PY

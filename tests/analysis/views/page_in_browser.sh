@@ -51,7 +51,8 @@ for page in "$work"/pages/*.html; do driven "$page" "$(basename "$page" .html)";
 driven "$work/pages/nine.html" "nine in the dark" --force-dark-mode --blink-settings=preferredColorScheme=0
 on_paper "$work/pages/nine.html" nine
 on_paper "$work/pages/thousand.html" thousand
-on_paper "$work/pages/nine.html" "nine without scripts" --blink-settings=scriptEnabled=false
+perl -0pe 's/<script.*?<\/script>//gs' "$work/pages/nine.html" >"$work/still.html"
+on_paper "$work/still.html" "nine without scripts"
 
 # A run that was recorded: the second and third quarter of it as the page shows it and as the table says it.
 "$stipple" report "$archives/format-1.stipple" -o "$work/run.html" >/dev/null || fail "stipple report: $?"
