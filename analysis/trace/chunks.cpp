@@ -25,6 +25,15 @@ struct Layout {
 constexpr Layout kGranules = {kGranuleBytes, kGranuleBytes, false};
 constexpr Layout kCompacted = {kFirstCompactedByte, kCompactedAlign, true};
 
+/// Whole pages of a mapped file; when they are looked at again they are there again.
+void ReleasePages(Bytes part) {
+  static const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+  const auto begin = reinterpret_cast<std::uintptr_t>(part.data());
+  const std::uintptr_t first = begin / page * page;
+  const std::uintptr_t last = (begin + part.size()) / page * page;
+  if (first < last) madvise(reinterpret_cast<void*>(first), last - first, MADV_DONTNEED);
+}
+
 bool IsChunk(const ChunkHeader& h, const Layout& layout) {
   return h.magic == kChunkMagic && h.bytes != 0 && h.bytes % layout.align == 0 &&
          (h.kind == ChunkKind::kEvents || h.kind == ChunkKind::kDefinitions ||
@@ -198,7 +207,10 @@ bool TakeThread(Stream& stream, std::vector<LiveChunk>& chunks, FoundChunks& fou
 // Walks the places. One that is no chunk's begin is skipped; a whole granule of zeros was never
 // used.
 FoundChunks FindChunks(Stream& stream) {
+  // Looking at one header makes pages around it resident, of a large file all: they are given back.
+  constexpr std::size_t kMostResident = std::size_t{16} << 20;
   const Bytes file = stream.file.bytes();
+  std::size_t released = 0;
   const bool compacted =
       (stream.header.features & static_cast<std::uint64_t>(Feature::kCompacted)) != 0;
   const Layout layout = compacted ? kCompacted : kGranules;
@@ -233,7 +245,11 @@ FoundChunks FindChunks(Stream& stream) {
       Add(found, chunk, h.kind);
     if (offset + h.bytes > file.size()) stream.health.Add(Defect::kTruncatedFile, stream.file_name);
     offset += h.bytes;
+    if (offset - released < kMostResident || offset > file.size()) continue;
+    ReleasePages(file.subspan(released, offset - released));
+    released = offset;
   }
+  ReleasePages(file.subspan(released));
   if (compacted && offset < file.size())
     stream.health.Add(Defect::kTruncatedFile, stream.file_name);
   return found;
@@ -269,17 +285,14 @@ FoundChunks FindLiveChunks(Stream& stream, bool& whole) {
 }
 
 void ReleaseChunk(const Stream& stream, const Chunk& chunk) {
-  static const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
-  const auto address = [](const auto* p) { return reinterpret_cast<std::uintptr_t>(p); };
-  const bool coded = !chunk.code.empty();
-  const std::uintptr_t begin = coded ? address(chunk.code.data()) : address(chunk.begin);
-  const std::uintptr_t end = coded ? begin + chunk.code.size() : address(chunk.end);
+  const auto* const words = reinterpret_cast<const std::byte*>(chunk.begin);
+  const Bytes part = chunk.code.empty()
+                         ? Bytes(words, static_cast<std::size_t>(chunk.end - chunk.begin) * 8)
+                         : Bytes(chunk.code.data(), chunk.code.size());
   // Copies of what a process still writes lie elsewhere, in memory that would be lost.
   const Bytes file = stream.file.bytes();
-  if (begin < address(file.data()) || end > address(file.data()) + file.size()) return;
-  const std::uintptr_t first = begin / page * page;
-  const std::uintptr_t last = end / page * page;
-  if (first < last) madvise(reinterpret_cast<void*>(first), last - first, MADV_DONTNEED);
+  if (part.data() < file.data() || part.data() + part.size() > file.data() + file.size()) return;
+  ReleasePages(part);
 }
 
 std::vector<Chunk> FindLiveDefinitions(const MappedFile& mapped) {
