@@ -30,6 +30,8 @@ class NumberTree {
     PathSums own;
   };
 
+  static constexpr std::size_t kMostPaths = 5'000;
+
   NumberTree() : nodes_(1) {}
   std::uint32_t Child(std::uint32_t parent, std::uint64_t number) {
     const auto [at, is_new] =
@@ -38,7 +40,13 @@ class NumberTree {
     return at->second;
   }
   /// The place of `number` on the path that ends at `node`, or else a new end of it.
+  /// When there are more paths than anybody can read, calls that would make a new one count for
+  /// their caller: memory stays bounded, whatever the program does.
   std::uint32_t Folded(std::uint32_t node, std::uint64_t number) {
+    if (nodes_.size() >= kMostPaths) {
+      const auto known = folded_.find({node, number});
+      return known == folded_.end() ? node : known->second;
+    }
     const auto [at, is_new] = folded_.try_emplace({node, number}, 0);
     if (is_new) {
       std::uint32_t seen = node;
