@@ -151,8 +151,8 @@ using Said = std::tuple<std::vector<WholeStack::Time>, std::vector<std::uint64_t
                         std::uint64_t, std::vector<std::uint32_t>>;
 Said SaidBy(const ProfileVisitor& visitor, const std::vector<std::uint32_t>& open) {
   std::vector<WholeStack::Time> times;
-  for (const RegionTicks& r : visitor.regions())
-    times.push_back({r.Calls(), r.Inclusive(), r.exclusive});
+  for (const VisitSums& r : visitor.regions())
+    times.push_back({r.calls, r.Inclusive(), r.exclusive});
   std::vector<std::uint64_t> slack;
   for (const RegionSlack& s : visitor.slacks()) {
     slack.push_back(s.guessed);
