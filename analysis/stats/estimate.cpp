@@ -222,7 +222,7 @@ class Estimator {
     const Bounded inclusive = InclusiveOf(r) * ns_per_tick_;
     const Bounded exclusive = ExclusiveOf(r) * ns_per_tick_;
     return {0,
-            tally.calls + tally.other_visits,
+            tally.Calls() + tally.other_visits,
             inclusive.value,
             exclusive.value,
             inclusive.Ends(),
@@ -234,7 +234,7 @@ class Estimator {
     const double cost = accounts_[r].cost;
     return {
         0,
-        2 * tally.calls + tally.other_events,
+        2 * tally.Calls() + tally.other_events,
         tally.other_visits - std::min<std::uint64_t>(tally.other_visits, tally.samples.size()),
         (corrected.value + cost) * ns_per_tick_,
         cost * ns_per_tick_,
@@ -245,7 +245,7 @@ class Estimator {
   /// Of a sparse run, how much of the price of clocked events is paid.
   double SparsePart() const {
     std::uint64_t events = 0;
-    for (const RegionTally& t : visitor_.regions()) events += 2 * t.calls;
+    for (const RegionTally& t : visitor_.regions()) events += 2 * t.Calls();
     const std::uint64_t unclocked = std::min(events, visitor_.unclocked_events());
     if (!visitor_.is_sparse() || events == 0 || prices_.timed == 0) return 1;
     const double share = static_cast<double>(unclocked) / static_cast<double>(events);
@@ -257,9 +257,9 @@ class Estimator {
     sparse_ = SparsePart();
     for (std::size_t r = 0; r < accounts_.size(); ++r) {
       const RegionTally& t = visitor_.regions()[r];
-      const auto timed = static_cast<double>(t.calls * prices_.timed_inner +
+      const auto timed = static_cast<double>(t.Calls() * prices_.timed_inner +
                                              t.timed_children * prices_.TimedOuter());
-      const auto all = static_cast<double>(t.exclusive);
+      const auto all = static_cast<double>(t.Exclusive());
       const double cost = (timed * sparse_ + static_cast<double>(t.other_cost)) / kPriceUnit;
       accounts_[r].cost = std::min(cost, all);
       accounts_[r].timed = all - accounts_[r].cost;
@@ -298,8 +298,8 @@ class Estimator {
   /// A thread that was too short for a sample: its visits were as long as those that were timed.
   void AddUnsampled(std::size_t q) {
     const RegionTally& t = visitor_.regions()[q];
-    if (!t.samples.empty() || t.pending == 0 || t.calls == 0) return;
-    const double mean = static_cast<double>(t.exclusive) / static_cast<double>(t.calls);
+    if (!t.samples.empty() || t.pending == 0 || t.Calls() == 0) return;
+    const double mean = static_cast<double>(t.Exclusive()) / static_cast<double>(t.Calls());
     const double ticks = std::min(total_, mean * static_cast<double>(t.pending));
     Add(accounts_[q].in, {ticks, 0, ticks, 0, 0, 0});
     accounts_[q].room += total_;
@@ -309,7 +309,7 @@ class Estimator {
   }
   Bounded ExclusiveOf(std::size_t r) const {
     const RegionTally& t = visitor_.regions()[r];
-    return accounts_[r].Exclusive(TimedDoubt(t.calls + t.timed_children));
+    return accounts_[r].Exclusive(TimedDoubt(t.Calls() + t.timed_children));
   }
   Bounded InclusiveOf(std::size_t r) const {
     const RegionTally& t = visitor_.regions()[r];
@@ -319,7 +319,7 @@ class Estimator {
     const double timed = std::max(0.0, static_cast<double>(t.Inclusive()) - cost);
     const double value =
         std::clamp(timed + part.ticks, exclusive.value, std::max(exclusive.value, total_));
-    const double doubt = std::sqrt(part.variance) + part.linear + TimedDoubt(t.calls);
+    const double doubt = std::sqrt(part.variance) + part.linear + TimedDoubt(t.Calls());
     const double most = std::max(value, total_);
     if (t.recursive) return {value, exclusive.low, most};
     return {value, std::clamp(value - doubt, exclusive.low, value),
@@ -352,8 +352,8 @@ LocationEstimate EstimateFrom(const Trace& trace, const Location& location,
   LocationEstimate estimate;
   for (std::size_t r = 0; r < process.regions.size(); ++r) {
     const RegionTally& tally = visitor.regions()[r];
-    if (tally.calls == 0 && tally.other_visits == 0 && tally.Inclusive() == 0 &&
-        tally.exclusive == 0)
+    if (tally.Calls() == 0 && tally.other_visits == 0 && tally.Inclusive() == 0 &&
+        tally.Exclusive() == 0)
       continue;
     estimate.profile.push_back(estimator.TimeOf(r));
     estimate.overhead.push_back(estimator.OverheadOf(r));

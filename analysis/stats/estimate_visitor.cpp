@@ -32,6 +32,8 @@ EstimateVisitor::EstimateVisitor(std::uint32_t region_count, std::uint64_t begin
       collector_(collector) {
   for (std::uint32_t r = 0; collector != nullptr && r < region_count; ++r)
     regions_[r].is_watched = collector->Wants(r) ? 1 : 0;
+  // What no region had is as the time of one that is always open.
+  regions_.back().ticks[2] = begin;
   hot_ = {this,  regions_.data(), stack_.bottom(), stack_.limit(), begin,
           end,   begin,           0,               prices.timed,   prices.timed_inner};
 }
@@ -60,20 +62,20 @@ std::size_t EstimateVisitor::Block(Hot& hot, const EventWord* words, std::size_t
 /// Its cost so far is that of the events before it.
 void EstimateVisitor::PushOther(Hot& hot, RegionTally* region, std::uint64_t now, FrameKind kind) {
   RegionTally* const charged = Charged(hot);
-  ++region->open;
+  ++region->events;
   hot.Push(region, now);
   others_.push_back({stack_.Depth(hot), charged, hot.cost, kind});
 }
 
 /// The frame on top, which is not timed.
 void EstimateVisitor::PopOther(Hot& hot) {
-  --(hot.top--)->region->open;
+  --(hot.top--)->region->events;
   others_.pop_back();
 }
 
 void EstimateVisitor::Finish(std::uint64_t ticks, std::span<const VisitCount> counts,
                              std::uint32_t thread) {
-  hot_.Charge(std::max(hot_.last, ticks));
+  regions_.back().ticks[3] += hot_.To(std::max(hot_.last, ticks));
   while (hot_.top != stack_.bottom()) {
     if (KindOfTop(hot_) == FrameKind::kTimed)
       hot_.PopTimed(hot_.last);
@@ -105,7 +107,7 @@ EstimateVisitor::Hot EstimateVisitor::Transparent(Hot hot, RegionTally* region, 
       ++region->pending;
     }
     PushOther(hot, region, hot.last, FrameKind::kUnclocked);
-  } else if (region->open == 0) {
+  } else if (region->Open() == 0) {
     ++leaves_without_enter_;
   } else {
     if (hot.top->region != region) hot = Repair(hot, region, ticks);
@@ -134,11 +136,11 @@ EstimateVisitor::Hot EstimateVisitor::EnterCounted(Hot hot, const EventWord* rec
   const bool is_sample = r.purpose == CountedPurpose::kSample;
   if (is_sample) {
     open_samples_.push_back({1 + r.visits + region->pending, 0, 0, 0, chunks_,
-                             region->open != 0, counts});
+                             region->Open() != 0, counts});
     region->pending = 0;
   } else {
     if (counts) region->pending += 1 + r.visits;
-    region->recursive = region->recursive || (region->open != 0 && !open_samples_.empty());
+    region->recursive = region->recursive || (region->Open() != 0 && !open_samples_.empty());
   }
   PushOther(hot, region, now, is_sample ? FrameKind::kSample : FrameKind::kInside);
   return hot;
@@ -233,20 +235,20 @@ EstimateVisitor::Hot EstimateVisitor::Other(Hot hot, const EventWord* record, st
 /// Begins with the frames that were open when the rest of a ring began. They are no calls, and
 /// count from there on.
 void EstimateVisitor::BeginOpen(Hot& hot, const EventWord* record, std::uint64_t ticks) {
-  hot.Charge(ticks);
+  hot.To(ticks);
   begin_is_known_ = AllOpenKnown(record);
   points_.Begin(record);
   for (const std::uint32_t r :
        OpenRegions(record, static_cast<std::uint32_t>(regions_.size() - 1))) {
     RegionTally* const region = &regions_[r];
-    --region->calls;  // its enter here is none
+    region->NoCall();
     hot.PushTimed(region, hot.last);
     if (region->is_watched != 0) collector_->Function(r, false, ticks);
   }
 }
 
 EstimateVisitor::Hot EstimateVisitor::Jump(Hot hot, const EventWord* record, std::uint64_t ticks) {
-  hot.Charge(ticks);
+  hot.To(ticks);
   const std::uint32_t before = points_.context();
   const std::optional<StackPlace> place = points_.After(record, stack_.Depth(hot));
   if (!place) return hot;
@@ -278,7 +280,7 @@ void EstimateVisitor::SwitchContext(Hot& hot, std::uint32_t from, std::uint32_t 
   if (frames.empty()) return;
   for (const auto& [region, is_timed] : frames.mapped()) {
     if (is_timed) {
-      --region->calls;
+      region->NoCall();
       hot.PushTimed(region, hot.last);
     } else {
       // A sample that waited has no time that could be used.

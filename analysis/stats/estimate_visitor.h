@@ -55,7 +55,7 @@ struct RegionTally : VisitSums {
   Sums costs = {};                   // 1/256 ticks, of all events before; as `ticks`
   std::uint64_t timed_children = 0;  // timed visits whose innermost timed frame around it was
   // Others.
-  std::uint64_t other_cost = 0;    // 1/256 ticks, of events that are not timed, in `exclusive`
+  std::uint64_t other_cost = 0;    // 1/256 ticks, of events that are not timed, in Exclusive()
   std::uint64_t other_visits = 0;  // counted ones, too
   std::uint64_t other_events = 0;  // that were written for them
   std::uint64_t pending = 0;       // visits that no sample stands for yet
@@ -94,18 +94,18 @@ class EstimateVisitor {
     std::uint64_t timed_inner;
 
     void Function(std::uint32_t region, bool leave, std::uint64_t ticks) {
-      const std::uint64_t now = Charge(ticks);
+      const std::uint64_t now = To(ticks);
       RegionTally* const r = regions + region;
       if (r->is_watched != 0) [[unlikely]]
         owner->collector_->Function(region, leave, ticks);
       if (!leave) {
-        r->calls -= static_cast<std::uint64_t>(now != ticks);
+        if (now != ticks) r->NoCall();
         ++owner->Charged(*this)->timed_children;
         PushTimed(r, now);
         return;
       }
       if (top->region != r) [[unlikely]] {
-        if (r->open == 0) {
+        if (r->Open() == 0) {
           ++owner->leaves_without_enter_;
           return;
         }
@@ -127,18 +127,15 @@ class EstimateVisitor {
       ++owner->unclocked_events_;
     }
     void Counted(const EventWord* record, std::uint32_t region, std::uint64_t ticks) {
-      *this = owner->EnterCounted(*this, record, regions + region, Charge(ticks), ticks);
+      *this = owner->EnterCounted(*this, record, regions + region, To(ticks), ticks);
     }
     void Record(const EventWord* record, std::uint64_t ticks) {
       *this = owner->Other(*this, record, ticks);
       if (owner->collector_ != nullptr) owner->collector_->Record(record, ticks);
     }
 
-    std::uint64_t Charge(std::uint64_t ticks) {
-      const std::uint64_t now = ticks < begin ? begin : ticks > end ? end : ticks;
-      owner->Charged(*this)->exclusive += now - last;
-      last = now;
-      return now;
+    std::uint64_t To(std::uint64_t ticks) {
+      return last = ticks < begin ? begin : ticks > end ? end : ticks;
     }
     void Push(RegionTally* region, std::uint64_t now) {
       if (top == limit) [[unlikely]] {
@@ -149,12 +146,14 @@ class EstimateVisitor {
     }
     void PushTimed(RegionTally* region, std::uint64_t now) {
       region->costs[region->Count(0, now)] += cost;
+      owner->Charged(*this)->inside[0] += now;
       Push(region, now);
     }
     void PopTimed(std::uint64_t now) {
       RegionTally* const r = (top--)->region;
       r->costs[r->Count(1, now)] += cost + timed_inner;
       cost += timed_price;
+      owner->Charged(*this)->inside[1] += now;
     }
   };
 

@@ -46,9 +46,9 @@ LocationProfile ProfileFrom(const Trace& trace, const Location& location,
   LocationProfile profile;
   for (std::size_t r = 0; r < visitor.regions().size(); ++r) {
     const VisitSums& ticks = visitor.regions()[r];
-    if (ticks.calls == 0 && ticks.Inclusive() == 0 && ticks.exclusive == 0) continue;
+    if (ticks.Calls() == 0 && ticks.Inclusive() == 0 && ticks.Exclusive() == 0) continue;
     const double inclusive = static_cast<double>(ticks.Inclusive()) * ns_per_tick;
-    const double exclusive = static_cast<double>(ticks.exclusive) * ns_per_tick;
+    const double exclusive = static_cast<double>(ticks.Exclusive()) * ns_per_tick;
     Bounds inclusive_bounds{inclusive, inclusive};
     Bounds exclusive_bounds{exclusive, exclusive};
     if (!visitor.slacks().empty()) {
@@ -58,7 +58,7 @@ LocationProfile ProfileFrom(const Trace& trace, const Location& location,
       exclusive_bounds = {sure, sure + static_cast<double>(slack.possible) * ns_per_tick};
       inclusive_bounds = {kUnknown, kUnknown};
     }
-    profile.push_back({process.regions[r], ticks.calls, inclusive, exclusive, inclusive_bounds,
+    profile.push_back({process.regions[r], ticks.Calls(), inclusive, exclusive, inclusive_bounds,
                        exclusive_bounds});
   }
   return profile;

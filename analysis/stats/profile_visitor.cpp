@@ -17,7 +17,7 @@ std::size_t ProfileVisitor::Block(Hot& hot, const EventWord* words, std::size_t 
 void ProfileVisitor::Open(std::span<const OpenVisit> visits) {
   for (const OpenVisit& v : visits) {
     VisitSums* const region = &regions_[v.region + 1 < regions_.size() ? v.region : 0];
-    --region->calls;  // its enter here is none
+    region->NoCall();
     hot_.Push(region, hot_.last);
   }
 }
@@ -80,7 +80,7 @@ void ProfileVisitor::Guess(const Hot& hot, const EventWord* first, const Unclock
 }
 
 ProfileVisitor::Hot ProfileVisitor::Jump(Hot hot, const EventWord* record, std::uint64_t ticks) {
-  hot.Charge(std::clamp(ticks, hot.begin, hot.end));
+  hot.last = std::clamp(ticks, hot.begin, hot.end);
   if (KindOf(*record) == RecordKind::kOpenFrames) {
     BeginOpen(hot, record, ticks);
     return hot;
@@ -101,7 +101,7 @@ void ProfileVisitor::BeginOpen(Hot& hot, const EventWord* record, std::uint64_t 
   points_.Begin(record);
   for (const std::uint32_t r :
        OpenRegions(record, static_cast<std::uint32_t>(regions_.size() - 1))) {
-    --regions_[r].calls;  // its enter here is none
+    regions_[r].NoCall();
     hot.Push(&regions_[r], hot.last);
     if (regions_[r].is_watched != 0) collector_->Function(r, false, ticks);
   }
@@ -118,7 +118,7 @@ void ProfileVisitor::SwitchContext(Hot& hot, std::uint32_t from, std::uint32_t t
   const auto frames = waiting_.extract(to);
   if (frames.empty()) return;
   for (VisitSums* const region : frames.mapped()) {
-    --region->calls;  // its enter here is none
+    region->NoCall();
     hot.Push(region, hot.last);
   }
 }

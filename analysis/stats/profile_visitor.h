@@ -26,7 +26,7 @@ struct RegionSlack {
   std::uint64_t in_run = 0;    // of that run
 };
 
-/// Charges the time between two events to the region on top of the stack. Ticks are clamped into
+/// The time between two events is that of the region on top of the stack. Ticks are clamped into
 /// the selected span, so time outside it is nobody's. Frames of a context that waits are off the
 /// stack: its time stands still.
 class ProfileVisitor {
@@ -45,15 +45,15 @@ class ProfileVisitor {
     void Function(std::uint32_t region, bool leave, std::uint64_t ticks) {
       const std::uint64_t now = ticks < begin ? begin : ticks > end ? end : ticks;
       VisitSums* const r = regions + region;
-      Charge(now);
+      last = now;
       if (r->is_watched != 0) [[unlikely]]
         owner->collector_->Function(region, leave, ticks);
       if (!leave) {
-        r->calls -= static_cast<std::uint64_t>(now != ticks);
+        if (now != ticks) r->NoCall();
         Push(r, now);
       } else if (top->region == r) [[likely]] {
         Pop(now);
-      } else if (r->open != 0) {
+      } else if (r->Open() != 0) {
         *this = owner->Repair(*this, r, ticks);
         Pop(now);
       } else {
@@ -69,19 +69,19 @@ class ProfileVisitor {
       if (owner->collector_ != nullptr) owner->collector_->Record(record, ticks);
     }
 
-    void Charge(std::uint64_t now) {
-      top->region->exclusive += now - last;
-      last = now;
-    }
     void Push(VisitSums* region, std::uint64_t now) {
       region->Count(0, now);
+      top->region->inside[0] += now;
       if (top == limit) [[unlikely]] {
         top = owner->stack_.Grow();
         limit = owner->stack_.limit();
       }
       *++top = {region, now};
     }
-    void Pop(std::uint64_t now) { (top--)->region->Count(1, now); }
+    void Pop(std::uint64_t now) {
+      (top--)->region->Count(1, now);
+      top->region->inside[1] += now;
+    }
   };
 
   /// Events of MPI functions and records go to `collector`, if there is one, at the same time.
@@ -101,7 +101,6 @@ class ProfileVisitor {
   /// Ends the frames that are still open.
   void Finish(std::uint64_t ticks) {
     const std::uint64_t now = std::max(hot_.last, std::clamp(ticks, hot_.begin, hot_.end));
-    hot_.Charge(now);
     while (hot_.top != stack_.bottom()) hot_.Pop(now);
   }
   /// For an index of the events, between the parts of a scan (Trace::ScanParts; costs nothing

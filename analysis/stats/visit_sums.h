@@ -14,33 +14,41 @@
 
 namespace stipple {
 
-/// All that an event touches of a region: one line of the cache, and few additions. Sums wrap,
-/// their differences are right: inclusive time is the sum of the times at which outermost visits
-/// end less those at which they begin.
+/// All that an event touches of a region: one line of the cache, and few additions. Sums are of the
+/// times of events, and wrap: their differences are right, and are the times between them.
 struct alignas(64) VisitSums {
-  /// Sums over enters and leaves of outermost visits, then over those of nested ones, which nobody
-  /// needs.
+  /// Over enters and leaves of outermost visits, then over those of nested ones.
   using Sums = std::uint64_t[4];
   Sums ticks = {};
-  std::uint64_t open = 0;
-  std::uint64_t calls = 0;
-  std::uint64_t exclusive = 0;   // ticks while it was on top of the stack
+  std::uint64_t inside[2] = {};  // ticks over enters and leaves of visits directly inside
+  std::uint64_t events = 0;      // their number, and in the low bits how many visits are open
   std::uint64_t is_watched = 0;  // its events go to the collector, too
 
+  // A stack of so many frames takes 4 GB, so many events of a region 500 GB. Beyond, numbers are
+  // wrong, but what counts as open is: they are right modulo this.
+  static constexpr std::uint64_t kEvent = std::uint64_t{1} << 28;
+
+  std::uint64_t Open() const { return events % kEvent; }
+  std::uint64_t Calls() const { return (events / kEvent + Open()) / 2; }
   std::uint64_t Inclusive() const { return ticks[1] - ticks[0]; }
+  /// While it was on top of the stack.
+  std::uint64_t Exclusive() const {
+    return Inclusive() + (ticks[3] - ticks[2]) - (inside[1] - inside[0]);
+  }
   /// One enter or leave; the place of its sums.
   std::size_t Count(std::uint64_t leave, std::uint64_t now) {
     // Whether a visit is the outermost one depends on the recursion, which nobody can foretell, and
     // of a choice between two values the compiler may make a branch: so this is arithmetic, -1 for
     // an outermost visit, else 0.
-    const std::int64_t outermost = static_cast<std::int64_t>((open ^ leave) - 1) >> 63;
-    const auto place = static_cast<std::size_t>(2 + static_cast<std::int64_t>(leave) + 2 * outermost);
-    // Last, as its place is known late: what is written behind it can be read only later.
-    open += 1 - 2 * leave;
-    calls += 1 - leave;
-    ticks[place] += now;
+    const std::int64_t outermost = static_cast<std::int64_t>((Open() ^ leave) - 1) >> 63;
+    const auto place =
+        static_cast<std::size_t>(2 + static_cast<std::int64_t>(leave) + 2 * outermost);
+    events += kEvent + 1 - 2 * leave;
+    ticks[place] += now;  // last, for its place is known late: what is written behind it waits
     return place;
   }
+  /// The enter that was or will be counted is no call.
+  void NoCall() { events -= 2 * kEvent; }
 };
 
 /// A visit that is open.
@@ -97,7 +105,7 @@ class FrameStack {
 
 /// Takes plain events (scan.h) that lie in the selected span, all of regions whose frames are
 /// alike; returns how many. Room for them must be there. `more(around, region, leave, place)` may
-/// count what else there is; `around` is on top of the stack before the event.
+/// count what else there is; `around` is the region of the frame below.
 ///
 /// Enter or leave, at random, is a branch that no processor foretells. So both take the same way:
 /// what a leave takes off the stack, an enter puts there, and it is put there for both. Only what
@@ -108,7 +116,6 @@ std::size_t TakePlain(Hot& hot, const EventWord* words, std::size_t count, std::
                       More&& more) {
   auto* const regions = hot.regions;
   auto* top = hot.top;
-  std::uint64_t last = hot.last;
   std::size_t i = 0;
   for (; i < count; ++i) {
     const EventWord word = words[i];
@@ -119,15 +126,14 @@ std::size_t TakePlain(Hot& hot, const EventWord* words, std::size_t count, std::
     if (((static_cast<std::uint64_t>(place->region != region) & leave) | region->is_watched) != 0)
         [[unlikely]]
       break;
-    auto& around = *top->region;
-    around.exclusive += now - last;
-    last = now;
+    auto& around = *place[-1].region;
+    around.inside[leave] += now;
     *place = {region, now};
     top = place - leave;
     more(around, *region, leave, region->Count(leave, now));
   }
   hot.top = top;
-  hot.last = last;
+  if (i != 0) hot.last = TimeOf(words[i - 1]) + offset;
   return i;
 }
 

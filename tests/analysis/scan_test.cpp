@@ -152,7 +152,7 @@ using Said = std::tuple<std::vector<WholeStack::Time>, std::vector<std::uint64_t
 Said SaidBy(const ProfileVisitor& visitor, const std::vector<std::uint32_t>& open) {
   std::vector<WholeStack::Time> times;
   for (const VisitSums& r : visitor.regions())
-    times.push_back({r.calls, r.Inclusive(), r.exclusive});
+    times.push_back({r.Calls(), r.Inclusive(), r.Exclusive()});
   std::vector<std::uint64_t> slack;
   for (const RegionSlack& s : visitor.slacks()) {
     slack.push_back(s.guessed);
