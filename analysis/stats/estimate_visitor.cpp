@@ -34,8 +34,8 @@ EstimateVisitor::EstimateVisitor(std::uint32_t region_count, std::uint64_t begin
     regions_[r].is_watched = collector->Wants(r) ? 1 : 0;
   // What no region had is as the time of one that is always open.
   regions_.back().ticks[2] = begin;
-  hot_ = {this,  regions_.data(), stack_.bottom(), stack_.limit(), begin,
-          end,   begin,           0,               prices.timed,   prices.timed_inner};
+  hot_ = {this, regions_.data(), stack_.bottom(),   stack_.limit(), begin, end, begin,
+          0,    prices.timed,    prices.timed_inner};
 }
 
 /// As Function, if all frames are timed.
@@ -135,8 +135,8 @@ EstimateVisitor::Hot EstimateVisitor::EnterCounted(Hot hot, const EventWord* rec
   }
   const bool is_sample = r.purpose == CountedPurpose::kSample;
   if (is_sample) {
-    open_samples_.push_back({1 + r.visits + region->pending, 0, 0, 0, chunks_,
-                             region->Open() != 0, counts});
+    open_samples_.push_back(
+        {1 + r.visits + region->pending, 0, 0, 0, chunks_, region->Open() != 0, counts});
     region->pending = 0;
   } else {
     if (counts) region->pending += 1 + r.visits;
@@ -264,8 +264,7 @@ void EstimateVisitor::SwitchContext(Hot& hot, std::uint32_t from, std::uint32_t 
     std::vector<WaitingFrame>& frames = waiting_[from];
     auto other = others_.begin();
     for (const Frame* f = stack_.bottom(); f++ != hot.top;) {
-      const bool is_timed =
-          other == others_.end() || f != stack_.bottom() + other->depth;
+      const bool is_timed = other == others_.end() || f != stack_.bottom() + other->depth;
       frames.push_back({f->region, is_timed});
       if (!is_timed) ++other;
     }

@@ -49,8 +49,8 @@ struct VisitSample {
   double inside = 0;  // visits that were recorded directly inside
 };
 
-/// What a location has of one region. The sums are of timed visits, the time on top is that while it
-/// was the innermost timed frame, and visits of all sorts can be open.
+/// What a location has of one region. The sums are of timed visits, the time on top is that while
+/// it was the innermost timed frame, and visits of all sorts can be open.
 struct RegionTally : VisitSums {
   Sums costs = {};                   // 1/256 ticks, of all events before; as `ticks`
   std::uint64_t timed_children = 0;  // timed visits whose innermost timed frame around it was
@@ -171,9 +171,7 @@ class EstimateVisitor {
   void Finish(std::uint64_t ticks, std::span<const VisitCount> counts, std::uint32_t thread);
 
   /// Visits that are open, outermost first, between the chunks of a scan; see ProfileVisitor.
-  std::vector<OpenVisit> OpenVisits() const {
-    return stack_.OpenVisits(hot_.top, regions_.data());
-  }
+  std::vector<OpenVisit> OpenVisits() const { return stack_.OpenVisits(hot_.top, regions_.data()); }
   bool IsPlain() const { return points_.IsPlain(); }
 
   /// By region of the process; the last is what no region had.

@@ -30,8 +30,7 @@ void ProfileVisitor::PopLeft(Hot& hot, std::uint64_t ticks) {
 }
 
 /// Ends the frames above the innermost one of `region`.
-ProfileVisitor::Hot ProfileVisitor::Repair(Hot hot, const VisitSums* region,
-                                           std::uint64_t ticks) {
+ProfileVisitor::Hot ProfileVisitor::Repair(Hot hot, const VisitSums* region, std::uint64_t ticks) {
   for (; hot.top->region != region; ++enters_without_leave_) PopLeft(hot, ticks);
   return hot;
 }
@@ -51,7 +50,8 @@ void ProfileVisitor::Guess(const Hot& hot, const EventWord* first, const Unclock
   const Frame* below = hot.top;
   std::uint64_t begin = run.begin;
   for (std::uint64_t gap = 0; gap <= run.events; ++gap) {
-    const std::uint32_t region = guessed_stack_.empty() ? NumberOf(below->region) : guessed_stack_.back();
+    const std::uint32_t region =
+        guessed_stack_.empty() ? NumberOf(below->region) : guessed_stack_.back();
     RegionSlack& slack = slacks_[region];
     if (std::exchange(slack.run, runs_) != runs_) {
       slack.in_run = 0;

@@ -110,9 +110,7 @@ class ProfileVisitor {
   ///   });
   /// The next events of at.Place() are met at at.now or later with these visits open, outermost
   /// first. Those of contexts that wait are not among them.
-  std::vector<OpenVisit> OpenVisits() const {
-    return stack_.OpenVisits(hot_.top, regions_.data());
-  }
+  std::vector<OpenVisit> OpenVisits() const { return stack_.OpenVisits(hot_.top, regions_.data()); }
   /// Begins with these.
   void Open(std::span<const OpenVisit> visits);
   /// Ticks of the selected span.

@@ -110,7 +110,8 @@ class FrameStack {
 /// Enter or leave, at random, is a branch that no processor foretells. So both take the same way:
 /// what a leave takes off the stack, an enter puts there, and it is put there for both. Only what
 /// seldom happens is a branch, and for Function: a leave of a region that is not on top, and what
-/// the collector wants to see, for with a call here the loop would not have its registers to itself.
+/// the collector wants to see, for with a call here the loop would not have its registers to
+/// itself.
 template <class Hot, class More>
 std::size_t TakePlain(Hot& hot, const EventWord* words, std::size_t count, std::uint64_t offset,
                       More&& more) {
