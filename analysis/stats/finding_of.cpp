@@ -224,7 +224,9 @@ void BlameSome(const Evidence& e, const Suspects& s, Finding& f) {
   f.detail = region.empty() ? ""
                             : words.Many(culprits) + (one ? " was" : " were") + " mostly in " +
                                   region + " meanwhile; ";
-  f.detail = Capitalised(f.detail + GainText(e, f, cause.if_mended));
+  const bool of_host = cause.spread && e.trace.IsHost(f.culprit);
+  f.detail =
+      Capitalised(f.detail + GainText(e, f, of_host ? "if nobody waited for it" : cause.if_mended));
 }
 
 /// The ranks wait, but for none in particular. Gain: if all were always equally late, nobody would
