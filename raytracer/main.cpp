@@ -70,12 +70,20 @@ void WriteText(const std::string& text, const std::string& path) {
   if (!file) throw InputError(path, 0, fmt::format("cannot be written: {}", std::strerror(errno)));
 }
 
-void WritePictures(const Raster& raster, ImageSize image, const Options& options) {
-  Mark(Moment::kOutputBegins);
-  if (options.output.ends_with(".exr"))
-    WriteExr(LinearPictureOf(raster, image, options.samples), options.output);
-  else if (!options.output.empty())
-    WritePng(PictureOf(raster, image, options.samples), options.output);
+/// What the picture lacks at most, be it written or not.
+LossBound WritePicture(const Raster& raster, ImageSize image, const Options& options) {
+  if (options.output.empty()) return LossOf(raster, image, options.samples);
+  if (options.output.ends_with(".exr")) {
+    const auto [picture, loss] = LinearPictureOf(raster, image, options.samples);
+    WriteExr(picture, options.output);
+    return loss;
+  }
+  const auto [picture, loss] = PictureOf(raster, image, options.samples);
+  WritePng(picture, options.output);
+  return loss;
+}
+
+void WriteCostMap(const Raster& raster, ImageSize image, const Options& options) {
   if (options.cost_map.ends_with(".png"))
     WritePng(CostImageOf(raster, image, options.samples), options.cost_map);
   else if (!options.cost_map.empty())
@@ -137,8 +145,9 @@ void RenderAndReport(const World& world, const Options& options) {
   report.messages = rendered.messages;
   OnRank(world, AssemblingRank(world, options.partition), [&] {
     const ImageSize image = scene.view.resolution;
-    report.loss = LossOf(rendered.raster, image, options.samples);
-    WritePictures(rendered.raster, image, options);
+    Mark(Moment::kOutputBegins);
+    report.loss = WritePicture(rendered.raster, image, options);
+    WriteCostMap(rendered.raster, image, options);
   });
   const RunReport run{shared.model.objects.size(), facts.model_bytes, GatherReports(world, report)};
   OnRank(world, 0, [&] {

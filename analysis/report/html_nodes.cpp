@@ -55,8 +55,16 @@ Table UtilisationOfRun(const ViewInput& views) {
   return table;
 }
 
+/// The host's rank; -1: there is none.
+int HostOf(const Timeline& timeline) {
+  const auto host = std::ranges::find(timeline.rows, true, &TimelineRow::is_host);
+  return host == timeline.rows.end() ? -1 : host->rank;
+}
+
 /// Any small table as it is.
-std::string PlainTable(const Table& table, const std::string& caption, std::string_view noun) {
+std::string PlainTable(const Table& table, const std::string& caption, const Timeline& timeline) {
+  const std::string noun(NounFor(timeline));
+  const std::int64_t host = HostOf(timeline);
   std::string text = fmt::format(
       "<div class=\"scroll\"><table class=\"plain\"><caption "
       "class=\"unseen\">{}</caption><thead><tr>",
@@ -68,7 +76,9 @@ std::string PlainTable(const Table& table, const std::string& caption, std::stri
     const bool is_text = !table.rows.empty() && std::holds_alternative<std::string>(
                                                     CellOf(table, table.rows.front(), column.name));
     text += fmt::format("<th scope=\"col\"{}>{}</th>", is_text ? "" : " class=\"n\"",
-                        EscapeMarkup(name == "rank" ? std::string(noun) : name));
+                        EscapeMarkup(name == "rank"           ? noun
+                                     : name == "busiest rank" ? "busiest " + noun
+                                                              : name));
   }
   text += "</tr></thead><tbody>\n";
   for (std::size_t r = 0; r < std::min(table.rows.size(), kMostTableRows); ++r) {
@@ -87,7 +97,8 @@ std::string PlainTable(const Table& table, const std::string& caption, std::stri
       else if (share)
         text += fmt::format("<td class=\"n\">{}</td>", FormatPercent(CellNumber(cell)));
       else if (const auto* whole = std::get_if<std::int64_t>(&cell))
-        text += fmt::format("<td class=\"n\">{}</td>", FormatCount(*whole));
+        text += fmt::format("<td class=\"n\">{}</td>",
+                            name == "rank" && *whole == host ? "host" : FormatCount(*whole));
       else
         text += fmt::format("<td class=\"n\">{}</td>", FormatThreeDigits(CellNumber(cell)));
     }
@@ -102,12 +113,12 @@ std::string PlainTable(const Table& table, const std::string& caption, std::stri
 }
 
 std::string TableSection(const Table& table, const std::string& heading, std::string_view id,
-                         const std::string& sentence, std::string_view noun) {
+                         const std::string& sentence, const Timeline& timeline) {
   if (table.rows.empty()) return {};
   std::string lead;
   if (!sentence.empty()) lead = "<p>" + EscapeMarkup(sentence) + "</p>";
   return PanelAround({.heading = heading, .style = "half", .id = id},
-                     lead + PlainTable(table, heading, noun));
+                     lead + PlainTable(table, heading, timeline));
 }
 
 /// Efficiencies as bars: parts of one, each the factor of what stands above it.
@@ -163,10 +174,7 @@ std::string NodesPage(const ReportInput& input, const ViewInput& views) {
                              "Not recorded: stipple run --switches records when threads left "
                              "their processors.")
               : TablePanel(views, {input.switches}, StripView, "Context switches", "switches", "");
-  int host = -1;
-  for (const TimelineRow& row : input.timeline.rows)
-    if (row.is_host) host = row.rank;
-  return text + StatesDetails(input.states, NounFor(input.timeline), host);
+  return text + StatesDetails(input.states, NounFor(input.timeline), HostOf(input.timeline));
 }
 
 std::string TimePage(const ReportInput& input, const ViewInput& views) {
@@ -177,11 +185,11 @@ std::string TimePage(const ReportInput& input, const ViewInput& views) {
     text += TablePanel(views, {UtilisationByRow(views, 96)}, ContourView,
                        fmt::format("Utilisation by {} and time", noun), "contour", "main");
   return text +
-         PanelRow(
-             EfficiencyPanel(input) + TableSection(input.critical_path, "Critical path",
-                                                   "critical-path", input.critical_path_text, noun),
-             "halves") +
-         TableSection(input.phases, "Phases", "phases", input.phases_text, noun);
+         PanelRow(EfficiencyPanel(input) + TableSection(input.critical_path, "Critical path",
+                                                        "critical-path", input.critical_path_text,
+                                                        input.timeline),
+                  "halves") +
+         TableSection(input.phases, "Phases", "phases", input.phases_text, input.timeline);
 }
 
 }  // namespace stipple

@@ -73,7 +73,7 @@ TableAnswer EfficiencyAnswer(const Analysis& analysis, const Selection& selectio
 
 TableAnswer Phases(const Analysis& analysis, const Selection& selection, const TableOptions&) {
   const std::vector<Phase> phases = PhasesOf(analysis, selection);
-  return {PhasesTable(analysis, phases), PhasesSentence(phases)};
+  return {PhasesTable(analysis, phases), PhasesSentence(analysis.trace, phases)};
 }
 
 TableAnswer ImbalanceSplit(const Analysis& analysis, const Selection& selection,
