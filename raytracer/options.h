@@ -70,9 +70,9 @@ inline constexpr OptionSpec kOptions[] = {
     {"camera", &Options::camera, "default|side|above|FILE",
      "the scene's own view, teapot from the side, rings from above, or the view of an NFF file"},
     {"resolution", &Options::resolution, "WxH", "image size in pixels (the scene's)", 1, 16384},
-    {"partition", &Options::partition, "tiled|scattered|bundles",
-     "who traces which ray: one tile per rank, row i by rank i mod P, or bundles that a host (the "
-     "last rank) hands out"},
+    {"partition", &Options::partition, "tiled|scattered|bundles|guided",
+     "who traces which ray: one tile per rank, row i by rank i mod P, bundles that a host (the "
+     "last rank) hands out, or bundles that ranks take themselves, the dearest first"},
     {"tile", &Options::tile, "rows|columns|blocks", "shape of the tiles of --partition tiled"},
     {"bundle", &Options::bundle, "PIXELS", "size of the bundles of --partition bundles", 1,
      kMostPoints},
