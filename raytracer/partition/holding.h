@@ -13,6 +13,8 @@ namespace stipple::raytracer {
 
 class Holding {
  public:
+  /// One rank holds one leaf.
+  Holding() : Holding(Even(1, 1)) {}
   /// The study's partial replication: as many leaves as ranks, and rank r holds `each` of them: r,
   /// r + 1, ... (after the last comes the first).
   static Holding Even(int ranks, int each);

@@ -25,6 +25,8 @@ struct LeafOnWay {
 
 class ObjectTree {
  public:
+  /// Without objects, in one leaf.
+  ObjectTree() : ObjectTree({}, 1) {}
   /// `boxes`: of the objects, by number. At least one leaf. Of the same boxes every rank makes the
   /// same tree.
   ObjectTree(std::span<const Bounds> boxes, std::uint32_t leaves);
