@@ -15,7 +15,9 @@
 #include "raytracer/image/exr_file.h"
 #include "raytracer/image/png_file.h"
 #include "raytracer/options.h"
+#include "raytracer/partition/scene_parts.h"
 #include "raytracer/plan.h"
+#include "raytracer/render/divided.h"
 #include "raytracer/render/marks.h"
 #include "raytracer/render/picture.h"
 #include "raytracer/render/render.h"
@@ -51,16 +53,19 @@ SceneChoice ChoiceOf(const Options& options) {
           options.patches};
 }
 
+PartitionChoice PointsOf(ImageSize image, const Options& options) {
+  return {RasterOf(image, options.samples), options.tile,
+          static_cast<std::uint32_t>(options.bundle), options.select,
+          static_cast<std::uint64_t>(options.seed)};
+}
+
 template <class Real>
 Rendered RenderScene(const World& world, const Scene& scene, const Model<Real>& model,
                      const Kernel<Real>& kernel, int depth, const Options& options) {
   const ImageSize image = scene.view.resolution;
-  const PartitionChoice choice{RasterOf(image, options.samples), options.tile,
-                               static_cast<std::uint32_t>(options.bundle), options.select,
-                               static_cast<std::uint64_t>(options.seed)};
   const ShadingChoice shading{depth, options.min_contribution};
   const auto sampler = MakeSampler(scene, model, kernel, shading, image, options.samples);
-  return Render(world, *sampler, options.partition, choice, options.samples);
+  return Render(world, *sampler, options.partition, PointsOf(image, options), options.samples);
 }
 
 void WriteText(const std::string& text, const std::string& path) {
@@ -108,10 +113,7 @@ void OnRank(const World& world, int rank, Work work) {
 }
 
 /// What is decided for this scene; rank 0 says why if it is asked to.
-template <class Real>
-SceneFacts Adapt(const World& world, const Scene& scene, Model<Real>& model,
-                 const Options& options) {
-  const SceneFacts facts = FactsOf(scene, model);
+void Adapt(const World& world, const SceneFacts& facts, const Options& options) {
   OnAllRanks(world, [&] {
     RequireDigits(facts, options);
     return true;
@@ -119,11 +121,25 @@ SceneFacts Adapt(const World& world, const Scene& scene, Model<Real>& model,
   OnRank(world, 0, [&] {
     if (options.explain) fmt::print("{}", Explanation(facts, options));
   });
-  return facts;
+}
+
+/// What is left when the picture is there.
+void Finish(const World& world, const Raster& raster, ImageSize image, RunReport run,
+            RankReport report, const std::string& kept_in, const Options& options) {
+  OnRank(world, AssemblingRank(world, options.partition), [&] {
+    Mark(Moment::kOutputBegins);
+    report.loss = WritePicture(raster, image, options);
+    WriteCostMap(raster, image, options);
+  });
+  run.ranks = GatherReports(world, report);
+  OnRank(world, 0, [&] {
+    WriteReport(run, options);
+    if (!kept_in.empty()) fmt::print("  scene from {}\n", kept_in);
+  });
 }
 
 template <class Real>
-void RenderAndReport(const World& world, const Options& options) {
+void RenderReplicated(const World& world, const Options& options) {
   SharedScene<Real> shared =
       SceneForAll<Real>(world, ChoiceOf(options), HierarchyFor(options.kernel));
   Scene& scene = shared.scene;
@@ -133,7 +149,8 @@ void RenderAndReport(const World& world, const Options& options) {
   report.build_cpu_s = shared.build_cpu_s;
   Stopwatch watch;
   const auto kernel = OnAllRanks(world, [&] { return MakeKernel(options.kernel, shared.model); });
-  const SceneFacts facts = Adapt(world, scene, shared.model, options);
+  const SceneFacts facts = FactsOf(scene, shared.model);
+  Adapt(world, facts, options);
   report.build_s += watch.Lap();
   report.build_cpu_s += watch.LapCpu();
   const Rendered rendered =
@@ -143,17 +160,52 @@ void RenderAndReport(const World& world, const Options& options) {
   report.render_cpu_s = watch.LapCpu();
   report.counts = rendered.counts;
   report.messages = rendered.messages;
-  OnRank(world, AssemblingRank(world, options.partition), [&] {
-    const ImageSize image = scene.view.resolution;
-    Mark(Moment::kOutputBegins);
-    report.loss = WritePicture(rendered.raster, image, options);
-    WriteCostMap(rendered.raster, image, options);
-  });
-  const RunReport run{shared.model.objects.size(), facts.model_bytes, GatherReports(world, report)};
-  OnRank(world, 0, [&] {
-    WriteReport(run, options);
-    if (!shared.kept_in.empty()) fmt::print("  scene from {}\n", shared.kept_in);
-  });
+  Finish(world, rendered.raster, scene.view.resolution,
+         {shared.model.objects.size(), facts.model_bytes, 0, 0, {}}, report, shared.kept_in,
+         options);
+}
+
+/// Objects divided among all ranks, but for the host. `fill`: as much on each as fits.
+template <class Real>
+void RenderPartitioned(const World& world, bool fill, const Options& options) {
+  const bool host = AssemblingRank(world, options.partition) != 0;
+  const Division division{world.size - (host ? 1 : 0), options.replicate, fill};
+  SceneParts<Real> parts = PartsForAll<Real>(world, ChoiceOf(options), options.kernel, division);
+  RankReport report;
+  report.load_s = parts.load_s;
+  report.build_s = parts.build_s;
+  report.build_cpu_s = parts.build_cpu_s;
+  const SceneFacts facts = FactsOf(world, parts);
+  Adapt(world, facts, options);
+  const ImageSize image = parts.scene.view.resolution;
+  const ShadingChoice shading{DepthFor(facts, static_cast<int>(options.max_depth)),
+                              options.min_contribution};
+  const auto tracer = world.rank < division.holders
+                          ? MakeRankTracer(parts, world.rank, shading, image, options.samples)
+                          : nullptr;
+  Stopwatch watch;
+  const DividedChoice choice{options.partition, PointsOf(image, options), division.holders,
+                             static_cast<std::size_t>(options.package)};
+  const DividedRender divided = RenderDivided(world, tracer.get(), choice);
+  report.render_s = watch.Lap();
+  report.render_cpu_s = watch.LapCpu();
+  report.counts = divided.rendered.counts;
+  report.messages = divided.rendered.messages;
+  report.travel = divided.travel;
+  Finish(world, divided.rendered.raster, image,
+         {facts.Objects(), facts.model_bytes, facts.parts, facts.copies, {}}, report, "", options);
+}
+
+template <class Real>
+void RenderAndReport(const World& world, const Options& options) {
+  if (options.objects == "partitioned") return RenderPartitioned<Real>(world, false, options);
+  try {
+    RenderReplicated<Real>(world, options);
+  } catch (const StoppedTogether& stop) {
+    if (!stop.no_room || options.objects != "auto" || options.samples.adaptive || world.size == 1)
+      throw;
+    RenderPartitioned<Real>(world, true, options);
+  }
 }
 
 void WriteScene(const Options& options) {

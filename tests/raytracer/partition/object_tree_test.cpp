@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+#include "raytracer/partition/object_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <set>
+
+#include "raytracer/partition/holding.h"
+
+namespace stipple::raytracer {
+namespace {
+
+constexpr double kRounding = std::numeric_limits<double>::epsilon();
+
+class Dice {
+ public:
+  explicit Dice(std::uint64_t seed) : random_(seed) {}
+  double In(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random_);
+  }
+  Vec3 Point(double size) { return {In(-size, size), In(-size, size), In(-size, size)}; }
+  /// Often along an axis, where planes are parallel to it.
+  Vec3 Direction() {
+    const double kind = In(0, 1);
+    if (kind < 0.1) return {0, In(0, 1) < 0.5 ? 1.0 : -1.0, 0};
+    if (kind < 0.2) return Normalized(Vec3{In(-1, 1), 0, In(-1, 1)});
+    return Normalized(Point(1));
+  }
+
+ private:
+  std::mt19937_64 random_;
+};
+
+std::vector<Bounds> SmallBoxes(std::size_t count, std::uint64_t seed) {
+  Dice dice(seed);
+  std::vector<Bounds> boxes;
+  for (std::size_t i = 0; i < count; ++i) {
+    Bounds box;
+    box.Include(dice.Point(10));
+    box.Include(box.low + Vec3{dice.In(0, 1), dice.In(0, 1), i % 7 == 0 ? 0 : dice.In(0, 1)});
+    boxes.push_back(box);
+  }
+  return boxes;
+}
+
+TEST(ObjectTree, EachObjectLiesInEveryLeafWhoseCellItReachesInto) {
+  const std::vector<Bounds> boxes = SmallBoxes(500, 1);
+  for (const std::uint32_t leaves : {1U, 2U, 3U, 8U, 32U, 100U}) {
+    const ObjectTree tree(boxes, leaves);
+    ASSERT_EQ(tree.leaves(), leaves);
+    for (std::uint32_t leaf = 0; leaf < leaves; ++leaf) {
+      const Bounds& cell = tree.CellOf(leaf);
+      const std::set<std::uint32_t> in(tree.ObjectsIn(leaf).begin(), tree.ObjectsIn(leaf).end());
+      EXPECT_TRUE(std::ranges::is_sorted(tree.ObjectsIn(leaf)));
+      for (std::uint32_t number = 0; number < boxes.size(); ++number) {
+        const Vec3 low = Max(boxes[number].low, cell.low),
+                   high = Min(boxes[number].high, cell.high);
+        if (low.x < high.x && low.y < high.y && low.z < high.z) {
+          EXPECT_TRUE(in.contains(number)) << leaf << ' ' << number;
+        }
+      }
+    }
+  }
+}
+
+TEST(ObjectTree, LeavesHoldAboutTheSameNumberOfObjects) {
+  const std::vector<Bounds> boxes = SmallBoxes(5000, 2);
+  for (const std::uint32_t leaves : {2U, 5U, 8U, 32U}) {
+    const ObjectTree tree(boxes, leaves);
+    std::size_t most = 0;
+    for (std::uint32_t leaf = 0; leaf < leaves; ++leaf)
+      most = std::max(most, tree.ObjectsIn(leaf).size());
+    EXPECT_LT(static_cast<double>(most), 2.0 * 5000 / leaves) << leaves;
+  }
+}
+
+// What makes the picture that of the serial program.
+TEST(ObjectTree, WhateverARayMeetsLiesInALeafOnItsWay) {
+  const std::vector<Bounds> boxes = SmallBoxes(300, 3);
+  Dice dice(4);
+  std::vector<LeafOnWay> way;
+  for (const std::uint32_t leaves : {1U, 2U, 7U, 32U}) {
+    const ObjectTree tree(boxes, leaves);
+    for (int i = 0; i < 20000; ++i) {
+      Ray<double> ray{dice.Point(12), dice.Direction()};
+      if (i % 3 == 0) ray.origin = boxes[static_cast<std::size_t>(i) % boxes.size()].low;
+      tree.Along(ray, kRounding, way);
+      for (std::size_t at = 1; at < way.size(); ++at) EXPECT_LE(way[at - 1].enter, way[at].enter);
+      for (std::uint32_t number = 0; number < boxes.size(); ++number) {
+        const double meets = EnterBounds(boxes[number], SlabRay(ray, 1), 1e30);
+        if (std::isinf(meets)) continue;
+        const bool found = std::ranges::any_of(way, [&](const LeafOnWay& on_way) {
+          return on_way.enter <= meets &&
+                 std::ranges::binary_search(tree.ObjectsIn(on_way.leaf), number);
+        });
+        EXPECT_TRUE(found) << leaves << ' ' << i << ' ' << number;
+      }
+    }
+  }
+}
+
+TEST(ObjectTree, NothingAndOneEnormousObject) {
+  std::vector<LeafOnWay> way;
+  ObjectTree({}, 8).Along({{0, 0, 0}, {0, 0, 1}}, kRounding, way);
+  EXPECT_TRUE(way.empty());
+  std::vector<Bounds> boxes = SmallBoxes(50, 5);
+  boxes.push_back({{-1e6, -1e6, -1e6}, {1e6, 1e6, 1e6}});
+  const ObjectTree tree(boxes, 8);
+  for (std::uint32_t leaf = 0; leaf < 8; ++leaf)
+    EXPECT_EQ(std::ranges::count(tree.ObjectsIn(leaf), 50U), 1);
+}
+
+TEST(ObjectTree, ObjectsInOnePlaceStillGiveAsManyLeaves) {
+  const std::vector<Bounds> boxes(20, Bounds{{1, 1, 1}, {2, 2, 2}});
+  const ObjectTree tree(boxes, 8);
+  std::vector<LeafOnWay> way;
+  tree.Along({{0, 1.5, 1.5}, {1, 0, 0}}, kRounding, way);
+  EXPECT_FALSE(way.empty());
+}
+
+TEST(Holding, EvenReplicationIsTheStudys) {
+  for (const int ranks : {1, 2, 5, 8})
+    for (int each = 1; each <= ranks; ++each) {
+      const Holding holding = Holding::Even(ranks, each);
+      for (int rank = 0; rank < ranks; ++rank)
+        EXPECT_EQ(holding.LeavesOf(rank).size(), static_cast<std::size_t>(each));
+      const std::vector<LeafOnWay> way{{0, 0}, {static_cast<std::uint32_t>(ranks - 1), 1}};
+      for (std::uint32_t spread = 0; spread < 20; ++spread)
+        EXPECT_TRUE(holding.Holds(holding.Next(way, spread), 0));
+    }
+}
+
+TEST(Holding, ARayGoesToWhoCanFollowItFarthest) {
+  const Holding holding = Holding::Even(8, 3);  // rank r holds r, r + 1, r + 2
+  EXPECT_EQ(holding.Next(std::vector<LeafOnWay>{{2, 0}, {3, 1}, {4, 2}}, 5), 2);
+  EXPECT_EQ(holding.Next(std::vector<LeafOnWay>{{2, 0}, {0, 1}}, 1), 0);
+}
+
+}  // namespace
+}  // namespace stipple::raytracer
