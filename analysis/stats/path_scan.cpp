@@ -68,8 +68,9 @@ class NumberTree {
 
 /// An open visit; the lowest one stands for no region.
 struct Frame {
-  std::uint32_t path;
   std::uint32_t region;
+  std::uint32_t path;
+  std::uint32_t folded;  // the path is its caller's
 };
 
 class PathVisitor {
@@ -106,24 +107,27 @@ class PathVisitor {
       const auto counts = static_cast<std::uint64_t>(begin <= ticks && ticks < end);
       regions[region].calls += counts;
       regions[top->region].children += counts;
-      std::uint32_t path = 0;
-      if (sums[top->path].leads_on != 0) path = owner->events_.Find(top->path, region);
-      if (path == 0 && !is_full) {
-        path = owner->NewPath(top->path, region);
-        sums = owner->sums_.data();
-        is_full = owner->sums_.size() >= kMostPaths;
+      // What is called from a call that is not told apart is not, either.
+      std::uint32_t path = top->path;
+      std::uint32_t folded = top->folded;
+      if (folded == 0) {
+        path = sums[path].leads_on == 0 ? 0 : owner->events_.Find(path, region);
+        if (path == 0 && !is_full) {
+          path = owner->NewPath(top->path, region);
+          sums = owner->sums_.data();
+          is_full = owner->sums_.size() >= kMostPaths;
+        } else if (path == 0) {
+          path = top->path;
+          folded = 1;
+        }
       }
-      if (path != 0) {
-        sums[path].calls += counts;
-      } else {
-        path = top->path;
-        sums[path].folded += counts;
-      }
+      sums[path].calls += counts & (folded ^ 1);
+      sums[path].folded += counts & folded;
       if (top == limit) [[unlikely]] {
         top = owner->stack_.Grow(top);
         limit = owner->stack_.Limit();
       }
-      *++top = {path, region};
+      *++top = {region, path, folded};
     }
     void Unclocked(std::uint32_t region, bool leave, std::uint64_t ticks) {
       ++owner->paths_.unclocked;
@@ -141,7 +145,7 @@ class PathVisitor {
   };
 
   PathVisitor(std::uint32_t region_count, std::uint64_t begin, std::uint64_t end)
-      : sums_(1), stack_({0, region_count}) {
+      : sums_(1), stack_({region_count, 0, 0}) {
     paths_.regions.resize(region_count + 1);
     hot_ = {this,  sums_.data(), paths_.regions.data(), stack_.Bottom(), stack_.Limit(), begin, end,
             begin, false};
