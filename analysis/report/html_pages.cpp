@@ -97,13 +97,14 @@ std::string MatrixPanel(const Table& table, const std::string& heading, std::str
 }  // namespace
 
 std::string TablePanel(const ViewInput& views, const std::vector<Table>& tables, View view,
-                       const std::string& heading, std::string_view id, const std::string& style) {
+                       const std::string& heading, std::string_view id, const std::string& style,
+                       const std::string& below) {
   ViewInput input = views;
   for (const Table& table : tables) {
     if (table.rows.empty()) return {};
     input.tables.push_back(&table);
   }
-  return PanelText({.heading = heading, .style = style}, Named(view(input), id));
+  return PanelText({.heading = heading, .style = style, .below = below}, Named(view(input), id));
 }
 
 std::span<const PageEntry> Pages() { return kPages; }
@@ -165,8 +166,13 @@ std::string CommunicationPage(const ReportInput& input, const ViewInput& views) 
 }
 
 std::string FunctionsPage(const ReportInput& input, const ViewInput& views) {
+  const std::string left_out =
+      input.callpaths_note.empty()
+          ? ""
+          : "<p class=\"more\">" + EscapeMarkup(input.callpaths_note) + "</p>\n";
   return ProfileSection(input.profile, input.spreads, input.timeline.rows) +
-         TablePanel(views, {input.callpaths}, FlameView, "Call paths", "callpaths", "paths");
+         TablePanel(views, {input.callpaths}, FlameView, "Call paths", "callpaths", "paths",
+                    left_out);
 }
 
 std::string QualityPage(const ReportInput& input, const ViewInput&) {

@@ -10,6 +10,7 @@
 #include "analysis/report/left_out.h"
 #include "analysis/report/series.h"
 #include "analysis/report/text.h"
+#include "analysis/stats/callpaths.h"
 #include "analysis/stats/finding_of.h"
 #include "analysis/stats/message_load.h"
 #include "analysis/stats/message_matrix.h"
@@ -125,12 +126,10 @@ std::string AddTable(const Analysis& analysis, std::string_view name, Table& tab
   return std::move(answer.headline);
 }
 
-/// Paths of a run of more events are left to `stipple stats`: they need a scan of their own.
-constexpr std::uint64_t kMostEventsForPaths = 200'000'000;
-
 void AddTime(const Analysis& analysis, ReportInput& input) {
-  if (analysis.trace.EventCount() <= kMostEventsForPaths)
-    AddTable(analysis, "callpaths", input.callpaths);
+  const CallPaths paths = CallPathsOf(analysis, {});
+  input.callpaths = CallPathsTable(paths);
+  input.callpaths_note = FoldedText(paths);
   if (analysis.trace.RankCount() < 2) return;
   input.efficiency_text = AddTable(analysis, "efficiency", input.efficiency);
   input.phases_text = AddTable(analysis, "phases", input.phases);

@@ -93,6 +93,7 @@ struct ReportInput {
   Table wait_matrix;                      // matrix of seconds that the row waited for the column
   Table switches;                         // over time by rank; no rows: none were recorded
   Table callpaths;                        // a tree
+  std::string callpaths_note;             // about calls that are not in it; empty: all are
   Table efficiency;                       // one object of fractions
   Table phases;
   Table critical_path;

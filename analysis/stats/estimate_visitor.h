@@ -244,7 +244,7 @@ class EstimateVisitor {
   EventPrices prices_;
   bool is_sparse_;
   std::vector<RegionTally> regions_;
-  FrameStack<RegionTally> stack_;
+  VisitStack<RegionTally> stack_;
   std::vector<OtherFrame> others_;        // on the stack, outermost first
   std::vector<OpenSample> open_samples_;  // outermost first
   MpiCollector* collector_;

@@ -151,7 +151,7 @@ class ProfileVisitor {
   std::size_t Block(Hot& hot, const EventWord* words, std::size_t count, std::uint64_t offset);
 
   std::vector<VisitSums> regions_;
-  FrameStack<VisitSums> stack_;
+  VisitStack<VisitSums> stack_;
   std::vector<RegionSlack> slacks_;
   std::uint64_t runs_ = 0;
   std::vector<std::uint32_t> guessed_stack_;  // of Guess: what it enters

@@ -62,11 +62,11 @@ struct VisitFrame {
 /// so that there is always one on top. Where the top is, the visitor knows: its hot part has it as
 /// `top`, and the last place that there is as `limit`.
 template <class Region>
-class FrameStack {
+class VisitStack {
  public:
   using Frame = VisitFrame<Region>;
 
-  explicit FrameStack(Region* none) : frames_(1024) { frames_.front() = {none, 0}; }
+  explicit VisitStack(Region* none) : frames_(1024) { frames_.front() = {none, 0}; }
 
   Frame* bottom() { return frames_.data(); }
   const Frame* bottom() const { return frames_.data(); }
