@@ -30,7 +30,6 @@ WindowCanvas::WindowCanvas(const WindowSource& source, std::vector<int> ranks, i
   vtk_->window->SetSize(width, height);
   title_ = TitleOf(state_, source_);
   vtk_->window->SetWindowName(title_.c_str());
-  vtk_->window->Initialize();
 }
 
 WindowCanvas::~WindowCanvas() {
@@ -39,6 +38,9 @@ WindowCanvas::~WindowCanvas() {
 }
 
 void WindowCanvas::Render() {
+  // Not before: an interactor that finds no connection to the X server opens one and keeps it until
+  // its loop has ended.
+  vtk_->window->Initialize();
   const int* size = vtk_->window->GetSize();
   scene_.Resize(size[0], size[1]);
   vtk_->painter.Show(scene_.Update(state_, controller_.moving(), controller_.band()),
