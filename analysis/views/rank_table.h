@@ -30,7 +30,7 @@ struct RankTable {
   std::vector<RankColumn> columns;
   std::optional<double> time_s;     // of the values, where they change over time
   std::vector<std::string> tables;  // their names
-  std::size_t left_out = 0;         // columns that count something else than the first
+  std::vector<std::string> left_out;  // columns that count something else, or are too many
   bool has_host() const;
 };
 
