@@ -27,8 +27,7 @@ constexpr std::size_t kMostTableRows = 12;
 
 /// Rows time_s, rank, utilisation: what contours are drawn from.
 Table UtilisationByRow(const ViewInput& views, std::size_t steps) {
-  Table table{
-      "utilisation", TableShape::kRows, {{"time_s"}, {"rank"}, {"utilisation"}}, {}};
+  Table table{"utilisation", TableShape::kRows, {{"time_s"}, {"rank"}, {"utilisation"}}, {}};
   const Timeline& timeline = *views.timeline;
   const double length = timeline.end_s - timeline.begin_s;
   std::vector<std::vector<StateShares>> columns;
@@ -82,7 +81,8 @@ std::string PlainTable(const Table& table, const std::string& caption, std::stri
       else if (name == "begin_s" && table.columns.size() > c + 1 &&
                table.columns[c + 1].name == "end_s")
         text += fmt::format(
-            "<td class=\"n\"><a href=\"#timeline\" data-from=\"{:.9g}\" data-to=\"{:.9g}\">{}</a></td>",
+            "<td class=\"n\"><a href=\"#timeline\" data-from=\"{:.9g}\" "
+            "data-to=\"{:.9g}\">{}</a></td>",
             CellNumber(cell), CellNumber(table.rows[r][c + 1]), FormatSeconds(CellNumber(cell)));
       else if (name.ends_with("_s") || name == "seconds")
         text += fmt::format("<td class=\"n\">{}</td>", FormatSeconds(CellNumber(cell)));

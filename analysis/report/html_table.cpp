@@ -206,7 +206,8 @@ std::string ProfileSection(const ReportInput& input) {
       "class=\"panel\"><h3 id=\"h-profile\">Functions</h3><span class=\"note\">whole run, summed "
       "over all ranks \u00b7 exclusive: without the functions called</span></header>\n<div "
       "class=\"scroll\"><table class=\"sortable\" id=\"functions-table\"><caption "
-      "class=\"unseen\">Time by function</caption><thead><tr><th scope=\"col\" data-sort=\"text\">function</th><th "
+      "class=\"unseen\">Time by function</caption><thead><tr><th scope=\"col\" "
+      "data-sort=\"text\">function</th><th "
       "scope=\"col\" data-sort=\"text\">file</th>{}{}{}<th scope=\"col\">inclusive, "
       "exclusive</th>",
       NumberHead("calls"), NumberHead("inclusive"), NumberHead("exclusive", true));

@@ -87,11 +87,12 @@ std::string FunctionsText(const FunctionSeries& series, std::size_t columns) {
   std::string text = fmt::format(R"("columns":{},"all":{},"list":[)", columns,
                                  StepsText(Coarser(series.all_ns, columns)));
   for (const FunctionSeries::Function& f : series.functions)
-    text += fmt::format(R"({}{{"name":"{}","estimated":{},"calls":{},"inclusive":{},"exclusive":{}}})",
-                        &f == series.functions.data() ? "" : ",", JsonText(f.region),
-                        f.estimated ? 1 : 0, NumbersText(Coarser(f.columns.calls, columns)),
-                        StepsText(Coarser(f.columns.inclusive_ns, columns)),
-                        StepsText(Coarser(f.columns.exclusive_ns, columns)));
+    text +=
+        fmt::format(R"({}{{"name":"{}","estimated":{},"calls":{},"inclusive":{},"exclusive":{}}})",
+                    &f == series.functions.data() ? "" : ",", JsonText(f.region),
+                    f.estimated ? 1 : 0, NumbersText(Coarser(f.columns.calls, columns)),
+                    StepsText(Coarser(f.columns.inclusive_ns, columns)),
+                    StepsText(Coarser(f.columns.exclusive_ns, columns)));
   return text + "]";
 }
 
@@ -166,9 +167,8 @@ std::string SwitchesData(const ReportInput& input, std::size_t budget) {
     if (times.empty() || time > times.back()) times.push_back(time);
     const std::string rank = CellText(CellOf(table, row, "rank"));
     if (const auto [at, is_new] = place.try_emplace(rank, counts.size()); is_new) {
-      const auto known = std::ranges::find(input.timeline.rows, rank, [](const TimelineRow& r) {
-        return std::to_string(r.rank);
-      });
+      const auto known = std::ranges::find(
+          input.timeline.rows, rank, [](const TimelineRow& r) { return std::to_string(r.rank); });
       ranks.push_back({rank, 0, known != input.timeline.rows.end() && known->is_host, {}});
       counts.emplace_back();
     }
@@ -183,8 +183,8 @@ std::string SwitchesData(const ReportInput& input, std::size_t budget) {
     for (std::size_t k = 0; k < row.count; ++k)
       for (std::size_t i = 0; i < std::min(times.size(), counts[row.first + k].size()); ++i)
         sum[i] += counts[row.first + k][i];
-    text += fmt::format(R"({}{{"ranks":{},"n":{}}})", &row == grid.rows.data() ? "" : ",", row.count,
-                        NumbersText(sum));
+    text += fmt::format(R"({}{{"ranks":{},"n":{}}})", &row == grid.rows.data() ? "" : ",",
+                        row.count, NumbersText(sum));
   }
   text += "]},";
   return text.size() <= std::min(kMostSwitchBytes, budget) ? text : "";

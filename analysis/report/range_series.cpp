@@ -146,8 +146,8 @@ FunctionSeries FunctionSeriesOf(const Analysis& analysis, std::size_t most) {
   std::set<std::uint32_t> degraded;
   for (const BudgetStep& step : analysis.steps) degraded.insert(step.region);
   for (std::size_t i = 0; i < regions.size(); ++i)
-    series.functions.push_back({trace.regions()[regions[i]].name, degraded.contains(regions[i]),
-                                std::move(columns[i])});
+    series.functions.push_back(
+        {trace.regions()[regions[i]].name, degraded.contains(regions[i]), std::move(columns[i])});
   series.all_ns = std::move(columns.back().exclusive_ns);
   return series;
 }
@@ -171,8 +171,8 @@ PairSeries PairSeriesOf(const Analysis& analysis, std::span<const BlamePiece> pi
                   cells.Of(other->second)];
   };
   for (const SendEvent& s : analysis.mpi.sends) {
-    PairSeries::Part* const of = part(static_cast<double>(s.enter_ns) / column_ns,
-                                      s.channel.sender, s.channel.receiver);
+    PairSeries::Part* const of =
+        part(static_cast<double>(s.enter_ns) / column_ns, s.channel.sender, s.channel.receiver);
     if (of == nullptr) continue;
     ++of->count;
     of->bytes += s.bytes;

@@ -119,7 +119,8 @@ std::vector<std::uint32_t> PlacesOf(const Trace& trace, const Process& process,
   std::vector<std::uint32_t> of_archive(trace.regions().size(), others);
   for (std::uint32_t i = 0; i < others; ++i) of_archive[regions[i]] = i;
   std::vector<std::uint32_t> places(process.RegionCount() + 1, others);
-  for (std::size_t r = 0; r < process.RegionCount(); ++r) places[r] = of_archive[process.regions[r]];
+  for (std::size_t r = 0; r < process.RegionCount(); ++r)
+    places[r] = of_archive[process.regions[r]];
   return places;
 }
 
@@ -127,8 +128,8 @@ std::vector<std::uint64_t> EndsOf(const Trace& trace, const Location& l, std::si
   std::vector<std::uint64_t> ends;
   const auto span = static_cast<double>(trace.SpanNs());
   for (std::size_t c = 1; c < columns; ++c)
-    ends.push_back(trace.TicksAt(l, std::llround(span * static_cast<double>(c) /
-                                                 static_cast<double>(columns))));
+    ends.push_back(trace.TicksAt(
+        l, std::llround(span * static_cast<double>(c) / static_cast<double>(columns))));
   ends.push_back(std::numeric_limits<std::uint64_t>::max());  // the last one has all that is left
   return ends;
 }
@@ -164,8 +165,7 @@ class Sums {
     for (RegionColumns& of_region : columns_) {
       for (auto* values : {&of_region.calls, &of_region.inclusive_ns, &of_region.exclusive_ns})
         values->resize(cut.columns);
-      of_region.exclusive_by_rank.resize(cut.ranks.size(),
-                                         std::vector<std::uint64_t>(cut.columns));
+      of_region.exclusive_by_rank.resize(cut.ranks.size(), std::vector<std::uint64_t>(cut.columns));
     }
   }
 

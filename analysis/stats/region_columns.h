@@ -29,13 +29,14 @@ struct ColumnCut {
 };
 
 /// Shape:  one for each of `cut.regions`, and the sum over all regions behind the last of them.
-/// Units:  sums over all locations, also of ranks that are not in `cut.ranks`. They are integers, so
+/// Units:  sums over all locations, also of ranks that are not in `cut.ranks`. They are integers,
+/// so
 ///         that they do not depend on which location is read first.
 /// Errors: none; visits without a leave end with the frame below, as in ProfileOf.
 ///
-/// Sums over all columns are those of the profile. Where the budget left events of a region out, its
-/// calls from then on are spread as those that were still recorded, and times as all that were: an
-/// estimate.
+/// Sums over all columns are those of the profile. Where the budget left events of a region out,
+/// its calls from then on are spread as those that were still recorded, and times as all that were:
+/// an estimate.
 std::vector<RegionColumns> RegionColumnsOf(const Analysis& analysis, const ColumnCut& cut);
 
 }  // namespace stipple

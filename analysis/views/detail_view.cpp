@@ -53,11 +53,11 @@ double Aside(char letter) { return letter == 'r' ? 3 : -2; }
 void AddMarks(Layer& layer, const std::vector<EventMark>& marks, double y) {
   for (const MarkGroup& group : GroupMarks(marks)) {
     const double x = group.x + (group.count == 1 ? Aside(marks[group.first].letter) : 0);
-    layer.shapes.emplace_back(TextShape{
-        x,
-        y,
-        group.text,
-        {.size = kMarkSize, .colour = kInk, .bold = true, .anchor = Anchor::kMiddle}});
+    layer.shapes.emplace_back(
+        TextShape{x,
+                  y,
+                  group.text,
+                  {.size = kMarkSize, .colour = kInk, .bold = true, .anchor = Anchor::kMiddle}});
   }
 }
 

@@ -15,8 +15,8 @@ inline constexpr double kMarkSize = 11;  // of the letters, which are bold
 
 struct EventMark {
   double x = 0;
-  char letter = 's';         // or 'r'
-  std::size_t message = 0;   // whose end it is
+  char letter = 's';        // or 'r'
+  std::size_t message = 0;  // whose end it is
 };
 
 struct MarkGroup {

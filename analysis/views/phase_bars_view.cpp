@@ -73,14 +73,20 @@ struct Drawing {
         const double begin = ends[i];
         ends[i] = std::min(width, begin + static_cast<double>(shares[i][s]) * width);
         if (ends[i] - begin >= 0.05)
-          bars.shapes.emplace_back(RectShape{left + begin, top + grid.rows[i].y, ends[i] - begin,
-                                             grid.rows[i].height, kStateColours[s], {}});
+          bars.shapes.emplace_back(RectShape{left + begin,
+                                             top + grid.rows[i].y,
+                                             ends[i] - begin,
+                                             grid.rows[i].height,
+                                             kStateColours[s],
+                                             {}});
       }
     for (std::size_t i = 0; i < shares.size(); ++i)
       if (!grid.rows[i].label.empty())
-        labels.shapes.emplace_back(TextShape{
-            left + width + kPercent, top + grid.middle(i), FormatPercent(shares[i][0]),
-            {.size = grid.label_size, .colour = kInk, .anchor = Anchor::kEnd}});
+        labels.shapes.emplace_back(
+            TextShape{left + width + kPercent,
+                      top + grid.middle(i),
+                      FormatPercent(shares[i][0]),
+                      {.size = grid.label_size, .colour = kInk, .anchor = Anchor::kEnd}});
   }
 
   void AddMean(const PhaseSpan& phase, const std::vector<StateShares>& shares, double left,
@@ -133,8 +139,8 @@ Scene PhaseBarsView(const ViewInput& input) {
   if (!HasRows(input.timeline) || input.tables.empty()) return scene;
   const std::vector<PhaseSpan> phases = PhasesIn(*input.tables.front());
   if (phases.empty()) return scene;
-  const RowGrid grid =
-      MakeRowGrid(input.timeline->rows, CulpritOf(input), {.max_pitch = 26, .max_height = 320});
+  const RowGrid grid = MakeRowGrid(input.timeline->rows, CulpritOf(input),
+                                   {.max_pitch = 26, .max_height = 320, .max_rows = 64});
   const double left = AxisLeft(grid);
   const double step = (kMainWidth - left + kGap) / static_cast<double>(kAcross);
   Drawing drawing{*input.timeline, grid, step - kGap - kPercent};

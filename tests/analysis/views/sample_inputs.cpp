@@ -286,15 +286,15 @@ FunctionSeries FunctionsOf(const Table& profile, std::size_t ranks) {
 PairSeries PairsOf(const ReportInput& report) {
   PairSeries series;
   const std::size_t ranks = report.messages.rows.size();
-  const MatrixCells cells = CellsFor(ranks, !report.timeline.rows.empty() &&
-                                                report.timeline.rows.back().is_host);
+  const MatrixCells cells =
+      CellsFor(ranks, !report.timeline.rows.empty() && report.timeline.rows.back().is_host);
   if (ranks < 2) return series;
   series.columns = 64;
   for (std::uint32_t c = 0; c < series.columns; ++c)
     for (std::uint32_t i = 0; i < cells.count; ++i)
       for (std::uint32_t k = 0; k < cells.count; ++k) {
-        const double count = CellNumber(report.messages.rows[i * ranks / cells.count]
-                                                            [k * ranks / cells.count + 1]);
+        const double count =
+            CellNumber(report.messages.rows[i * ranks / cells.count][k * ranks / cells.count + 1]);
         series.parts.push_back({c, i, k, static_cast<std::uint64_t>(count),
                                 static_cast<std::uint64_t>(count * 970), 40'000 + i * 1000 + k});
       }
