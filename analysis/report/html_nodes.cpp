@@ -11,7 +11,9 @@
 #include "analysis/report/html_panel.h"
 #include "analysis/report/html_table.h"
 #include "analysis/stats/number.h"
+#include "analysis/trace/demangle.h"
 #include "analysis/views/layout.h"
+#include "analysis/views/quantity.h"
 #include "analysis/views/state_runs.h"
 #include "analysis/views/svg_write.h"
 #include "analysis/views/table_access.h"
@@ -21,27 +23,21 @@ namespace stipple {
 namespace {
 
 constexpr std::size_t kMostDials = 32;  // more nodes have no room for one each
-constexpr std::size_t kMostTableRows = 24;
+constexpr std::size_t kMostTableRows = 12;
 
-/// Rows time_s, rank, window, since_start: of each row that the timeline draws, as the table
-/// `utilisation` has them by rank.
+/// Rows time_s, rank, utilisation: what contours are drawn from.
 Table UtilisationByRow(const ViewInput& views, std::size_t steps) {
-  Table table{
-      "utilisation", TableShape::kRows, {{"time_s"}, {"rank"}, {"window"}, {"since_start"}}, {}};
+  Table table{"utilisation", TableShape::kRows, {{"time_s"}, {"rank"}, {"utilisation"}}, {}};
   const Timeline& timeline = *views.timeline;
   const double length = timeline.end_s - timeline.begin_s;
   std::vector<std::vector<StateShares>> columns;
   for (const TimelineRow& row : timeline.rows)
     columns.push_back(AverageColumns(std::span(&row, 1), steps));
-  std::vector<double> sums(columns.size());
   for (std::size_t i = 0; i < steps; ++i)
-    for (std::size_t r = 0; r < columns.size(); ++r) {
-      sums[r] += static_cast<double>(columns[r][i][0]);
+    for (std::size_t r = 0; r < columns.size(); ++r)
       table.rows.push_back(stipple::RowOf(
           timeline.begin_s + length * static_cast<double>(i) / static_cast<double>(steps),
-          std::int64_t{timeline.rows[r].rank}, static_cast<double>(columns[r][i][0]),
-          sums[r] / static_cast<double>(i + 1)));
-    }
+          std::int64_t{timeline.rows[r].rank}, static_cast<double>(columns[r][i][0])));
   return table;
 }
 
@@ -86,12 +82,18 @@ std::string PlainTable(const Table& table, const std::string& caption, const Tim
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
       const Cell& cell = table.rows[r][c];
       const std::string& name = table.columns[c].name;
-      const bool share = name == "share" || name.ends_with("_share") ||
-                         name.ends_with("efficiency") || name == "load_balance";
+      const bool share = QuantityOf(name) == Quantity::kShare;
       if (const auto* words = std::get_if<std::string>(&cell))
-        text += fmt::format("<td>{}</td>", EscapeMarkup(ShortenMiddle(*words, 80)));
+        text += fmt::format("<td title=\"{}\">{}</td>", EscapeMarkup(ShortenMiddle(*words, 600)),
+                            EscapeMarkup(ShortenMiddle(ShortName(*words), 60)));
       else if (std::holds_alternative<std::monostate>(cell))
         text += "<td class=\"n\">\u2013</td>";
+      else if (name == "begin_s" && table.columns.size() > c + 1 &&
+               table.columns[c + 1].name == "end_s")
+        text += fmt::format(
+            "<td class=\"n\"><a href=\"#timeline\" data-from=\"{:.9g}\" "
+            "data-to=\"{:.9g}\">{}</a></td>",
+            CellNumber(cell), CellNumber(table.rows[r][c + 1]), FormatSeconds(CellNumber(cell)));
       else if (name.ends_with("_s") || name == "seconds")
         text += fmt::format("<td class=\"n\">{}</td>", FormatSeconds(CellNumber(cell)));
       else if (share)
@@ -113,11 +115,12 @@ std::string PlainTable(const Table& table, const std::string& caption, const Tim
 }
 
 std::string TableSection(const Table& table, const std::string& heading, std::string_view id,
-                         const std::string& sentence, const Timeline& timeline) {
+                         const std::string& sentence, const Timeline& timeline,
+                         const std::string& style = "half") {
   if (table.rows.empty()) return {};
   std::string lead;
   if (!sentence.empty()) lead = "<p>" + EscapeMarkup(sentence) + "</p>";
-  return PanelAround({.heading = heading, .style = "half", .id = id},
+  return PanelAround({.heading = heading, .style = style, .id = id},
                      lead + PlainTable(table, heading, timeline));
 }
 
@@ -163,18 +166,23 @@ bool HasTime(const ViewInput& views) {
 std::string NodesPage(const ReportInput& input, const ViewInput& views) {
   if (!HasTime(views) || input.timeline.rows.size() < 2) return {};
   const Table utilisation = UtilisationOfRun(views);
-  std::string instruments;
+  std::string text;
   if (input.timeline.rows.size() <= kMostDials)
-    instruments +=
-        TablePanel(views, {utilisation}, DialsView, "Utilisation, whole run", "dials", "half");
-  instruments += TablePanel(views, {utilisation}, KiviatView, "Balance, whole run", "kiviat", "");
-  std::string text = PanelRow(instruments, "halves");
-  text += input.switches.rows.empty()
+    text += TablePanel(views, {utilisation}, DialsView, "Utilisation, whole run", "dials", "main");
+  std::string both =
+      TablePanel(views, {utilisation}, KiviatView, "Balance, whole run", "kiviat", "half");
+  if (const std::string states =
+          StatesTable(input.states, NounFor(input.timeline), HostOf(input.timeline));
+      !states.empty())
+    both += PanelAround({.heading = "Time in each state", .style = "half", .id = "states"}, states);
+  text += PanelRow(both, "halves");
+  return text +
+         (input.switches.rows.empty()
               ? PanelWithout({.heading = "Context switches", .id = "switches"},
                              "Not recorded: stipple run --switches records when threads left "
                              "their processors.")
-              : TablePanel(views, {input.switches}, StripView, "Context switches", "switches", "");
-  return text + StatesDetails(input.states, NounFor(input.timeline), HostOf(input.timeline));
+              : TablePanel(views, {input.switches}, StripView, "Context switches", "switches",
+                           "main"));
 }
 
 std::string TimePage(const ReportInput& input, const ViewInput& views) {
@@ -185,11 +193,13 @@ std::string TimePage(const ReportInput& input, const ViewInput& views) {
     text += TablePanel(views, {UtilisationByRow(views, 96)}, ContourView,
                        fmt::format("Utilisation by {} and time", noun), "contour", "main");
   return text +
+         TablePanel(views, {input.phases}, PhaseBarsView, "Whole run, by phase", "phase-bars",
+                    "main") +
+         TableSection(input.phases, "Phases", "phases", input.phases_text, input.timeline, "main") +
          PanelRow(EfficiencyPanel(input) + TableSection(input.critical_path, "Critical path",
                                                         "critical-path", input.critical_path_text,
                                                         input.timeline),
-                  "halves") +
-         TableSection(input.phases, "Phases", "phases", input.phases_text, input.timeline);
+                  "halves");
 }
 
 }  // namespace stipple
