@@ -51,12 +51,6 @@ Table UtilisationOfRun(const ViewInput& views) {
   return table;
 }
 
-/// The host's rank; -1: there is none.
-int HostOf(const Timeline& timeline) {
-  const auto host = std::ranges::find(timeline.rows, true, &TimelineRow::is_host);
-  return host == timeline.rows.end() ? -1 : host->rank;
-}
-
 /// Any small table as it is.
 std::string PlainTable(const Table& table, const std::string& caption, const Timeline& timeline) {
   const std::string noun(NounFor(timeline));

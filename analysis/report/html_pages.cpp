@@ -40,13 +40,6 @@ std::string Legend(bool hints) {
   return text + "</ul>";
 }
 
-/// World rank of the host; -1: none.
-int HostOf(const Timeline& timeline) {
-  for (const TimelineRow& row : timeline.rows)
-    if (row.is_host) return row.rank;
-  return -1;
-}
-
 /// Timeline and bars, row by row side by side; below, curves on the timeline's axis.
 std::string Overview(const ReportInput& input, const ViewInput& views) {
   if (!HasRows(views.timeline)) return "<p class=\"without\">No rank has a timeline.</p>\n";
@@ -169,9 +162,8 @@ std::string FunctionsPage(const ReportInput& input, const ViewInput& views) {
       input.callpaths_note.empty()
           ? ""
           : "<p class=\"more\">" + EscapeMarkup(input.callpaths_note) + "</p>\n";
-  return ProfileSection(input) +
-         TablePanel(views, {input.callpaths}, FlameView, "Call paths", "callpaths", "paths",
-                    left_out);
+  return ProfileSection(input) + TablePanel(views, {input.callpaths}, FlameView, "Call paths",
+                                            "callpaths", "paths", left_out);
 }
 
 std::string QualityPage(const ReportInput& input, const ViewInput&) {
