@@ -17,12 +17,14 @@
 #include "raytracer/options.h"
 #include "raytracer/partition/scene_parts.h"
 #include "raytracer/plan.h"
+#include "raytracer/render/coupled.h"
 #include "raytracer/render/divided.h"
 #include "raytracer/render/marks.h"
 #include "raytracer/render/picture.h"
 #include "raytracer/render/render.h"
 #include "raytracer/report.h"
 #include "raytracer/scene/load.h"
+#include "raytracer/scene/memory_need.h"
 #include "raytracer/scene/nff.h"
 #include "raytracer/scene/shared_scene.h"
 #include "raytracer/stopwatch.h"
@@ -161,31 +163,52 @@ void RenderReplicated(const World& world, const Options& options) {
   report.counts = rendered.counts;
   report.messages = rendered.messages;
   Finish(world, rendered.raster, scene.view.resolution,
-         {shared.model.objects.size(), facts.model_bytes, 0, 0, {}}, report, shared.kept_in,
+         {shared.model.objects.size(), facts.model_bytes, 0, 0, 0, {}}, report, shared.kept_in,
          options);
+}
+
+/// What a rank may hold of a coupled scene.
+template <class Real>
+std::uint64_t BytesFor(const World& world, const SceneParts<Real>& parts, const Options& options) {
+  const std::uint64_t allowed = AllowedBytes(world, ChoiceOf(options));
+  if (options.replicate == 0) return allowed;
+  const double whole = static_cast<double>(BytesToBuild(parts.scene.shapes));
+  return std::min(allowed, static_cast<std::uint64_t>(options.replicate * whole));
 }
 
 /// Objects divided among all ranks, but for the host. `fill`: as much on each as fits.
 template <class Real>
 void RenderPartitioned(const World& world, bool fill, const Options& options) {
   const bool host = AssemblingRank(world, options.partition) != 0;
-  const Division division{world.size - (host ? 1 : 0), options.replicate, fill};
+  const bool coupled = options.objects == "coupled";
+  const Division division{world.size - (host ? 1 : 0), options.replicate, fill, coupled};
   SceneParts<Real> parts = PartsForAll<Real>(world, ChoiceOf(options), options.kernel, division);
   RankReport report;
   report.load_s = parts.load_s;
   report.build_s = parts.build_s;
   report.build_cpu_s = parts.build_cpu_s;
-  const SceneFacts facts = FactsOf(world, parts);
+  SceneFacts facts = FactsOf(world, parts);
   Adapt(world, facts, options);
   const ImageSize image = parts.scene.view.resolution;
   const ShadingChoice shading{DepthFor(facts, static_cast<int>(options.max_depth)),
                               options.min_contribution};
+  double predicted = 0;
+  if (coupled) {
+    predicted = Couple(world, shading, options.kernel, BytesFor(world, parts, options), parts);
+    facts = FactsOf(world, parts);
+  }
   const auto tracer = world.rank < division.holders
                           ? MakeRankTracer(parts, world.rank, shading, image, options.samples)
                           : nullptr;
   Stopwatch watch;
-  const DividedChoice choice{options.partition, PointsOf(image, options), division.holders,
-                             static_cast<std::size_t>(options.package)};
+  const DividedChoice choice{options.partition,
+                             PointsOf(image, options),
+                             division.holders,
+                             static_cast<std::size_t>(options.package),
+                             coupled && host
+                                 ? HomesOf(parts, PointsOf(image, options), image, options.samples)
+                                 : std::vector<std::uint32_t>(),
+                             &parts.holding};
   const DividedRender divided = RenderDivided(world, tracer.get(), choice);
   report.render_s = watch.Lap();
   report.render_cpu_s = watch.LapCpu();
@@ -193,12 +216,13 @@ void RenderPartitioned(const World& world, bool fill, const Options& options) {
   report.messages = divided.rendered.messages;
   report.travel = divided.travel;
   Finish(world, divided.rendered.raster, image,
-         {facts.Objects(), facts.model_bytes, facts.parts, facts.copies, {}}, report, "", options);
+         {facts.Objects(), facts.model_bytes, facts.parts, facts.copies, predicted, {}}, report, "",
+         options);
 }
 
 template <class Real>
 void RenderAndReport(const World& world, const Options& options) {
-  if (options.objects == "partitioned") return RenderPartitioned<Real>(world, false, options);
+  if (IsDivided(options)) return RenderPartitioned<Real>(world, false, options);
   try {
     RenderReplicated<Real>(world, options);
   } catch (const StoppedTogether& stop) {

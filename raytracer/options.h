@@ -82,14 +82,13 @@ inline constexpr OptionSpec kOptions[] = {
     {"select", &Options::select, "contiguous|modulo|random",
      "which pixels make a bundle: neighbours, every B-th of B bundles, or a random choice"},
     {"seed", &Options::seed, "N", "of the random choice", 0, 9e15},
-    {"objects", &Options::objects, "auto|replicated|partitioned",
+    {"objects", &Options::objects, "auto|replicated|partitioned|coupled",
      "a copy of all objects on each node, objects divided among the ranks so that rays travel to "
-     "them, or a copy where it fits"},
+     "them, divided but for those that a pilot finds dear, or a copy where it fits"},
     {"replicate", &Options::replicate, "F",
-     "of --objects partitioned: share of the scene's parts that each rank holds (0: one part)", 0,
-     1},
-    {"package", &Options::package, "RAYS", "of --objects partitioned: rays in a message, at most",
-     1, 65536},
+     "share of a divided scene that each rank holds (0: one part; coupled: what fits)", 0, 1},
+    {"package", &Options::package, "RAYS", "of a divided scene: rays in a message, at most", 1,
+     65536},
     {"samples", &Options::samples, "corners|N|adaptive",
      "rays per pixel: its four corners, shared with its neighbours, N inside, or from 8 to 256 as "
      "the pixel needs",
@@ -125,6 +124,11 @@ inline constexpr OptionSpec kOptions[] = {
 
 /// Errors: UsageError, naming the option or value and what is known.
 Options ParseOptions(int argc, const char* const* argv);
+
+/// Is the scene to be divided whatever its size?
+inline bool IsDivided(const Options& options) {
+  return options.objects == "partitioned" || options.objects == "coupled";
+}
 
 /// The text of --help.
 std::string HelpText();

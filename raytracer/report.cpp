@@ -140,6 +140,7 @@ std::string StatsJson(const RunReport& report) {
     json["packages_sent"] = travel.packages_sent;
     json["rays_per_package"] = RaysPerPackage(travel);
     json["most_rays_held"] = travel.most_held;
+    if (report.predicted_balance > 0) json["predicted_balance"] = report.predicted_balance;
   }
   const LossBound loss = LossIn(report);
   json["lost_mean"] = loss.mean;
@@ -169,9 +170,13 @@ std::string Summary(const RunReport& report) {
                     "on average, {:.2g} at the worst pixel\n",
                     loss.mean, loss.worst)
               : "  every ray was followed to its end\n";
-  if (tracing > 1 && work > 0)
-    text += fmt::format("  work of the busiest tracing rank over the mean: {:.2f}\n",
+  if (tracing > 1 && work > 0) {
+    text += fmt::format("  work of the busiest tracing rank over the mean: {:.2f}",
                         static_cast<double>(most) * tracing / work);
+    if (report.predicted_balance > 0)
+      text += fmt::format("; {:.2f} was foretold by the pilot", report.predicted_balance);
+    text += "\n";
+  }
   return text;
 }
 

@@ -64,29 +64,35 @@ std::unique_ptr<LeafPart<Real>> BuildLeaf(const Shapes& shapes,
   return part;
 }
 
+/// Leaves of a coupled scene on each rank: fine enough to deal work evenly, few enough that a ray
+/// does not meet a new one all the time.
+constexpr int kCoupledLeaves = 4;
+
+template <class Real>
+void Build(const Shapes& shapes, const std::string& kernel, int rank, SceneParts<Real>& parts) {
+  parts.held.resize(parts.tree.leaves());
+  parts.model_bytes = 0;
+  for (std::uint32_t leaf = 0; leaf < parts.tree.leaves(); ++leaf) {
+    std::unique_ptr<LeafPart<Real>>& held = parts.held[leaf];
+    if (rank >= parts.holding.ranks() || !parts.holding.Holds(rank, leaf)) {
+      held.reset();
+      continue;
+    }
+    if (!held) held = BuildLeaf<Real>(shapes, parts.tree.ObjectsIn(leaf), kernel);
+    parts.rounding = held->kernel->Rounding();
+    held->model.ForEachArray(
+        [&](const auto& array) { parts.model_bytes += array.size() * sizeof(array[0]); });
+  }
+}
+
+}  // namespace
+
 /// Bytes that one rank may take, of what its node has.
 std::uint64_t AllowedBytes(const World& world, const SceneChoice& choice) {
   if (choice.memory_limit > 0) return choice.memory_limit;
   const Node node(world.comm);
   return AvailableBytes() / static_cast<std::uint64_t>(node.size());
 }
-
-template <class Real>
-void Build(const Shapes& shapes, const std::string& kernel, int rank, SceneParts<Real>& parts) {
-  parts.held.resize(parts.tree.leaves());
-  if (rank < parts.holding.ranks())
-    for (const std::uint32_t leaf : parts.holding.LeavesOf(rank))
-      parts.held[leaf] = BuildLeaf<Real>(shapes, parts.tree.ObjectsIn(leaf), kernel);
-  for (std::uint32_t leaf = 0; leaf < parts.tree.leaves(); ++leaf) {
-    parts.copies += parts.tree.ObjectsIn(leaf).size();
-    if (!parts.held[leaf]) continue;
-    parts.rounding = parts.held[leaf]->kernel->Rounding();
-    parts.held[leaf]->model.ForEachArray(
-        [&](const auto& array) { parts.model_bytes += array.size() * sizeof(array[0]); });
-  }
-}
-
-}  // namespace
 
 template <class Real>
 SceneParts<Real> PartsForAll(const World& world, const SceneChoice& choice,
@@ -104,12 +110,17 @@ SceneParts<Real> PartsForAll(const World& world, const SceneChoice& choice,
   Mark(Moment::kBuildBegins);
   const std::uint64_t allowed = AllowedBytes(world, choice);
   OnAllRanks(world, [&] {
-    const Shapes shapes = std::exchange(parts.scene.shapes, {});
+    const Shapes& shapes = parts.scene.shapes;
     for (const Object& object : shapes.objects)
       ++parts.count[static_cast<std::size_t>(object.kind)];
-    parts.tree = ObjectTree(BoxesOf(shapes), static_cast<std::uint32_t>(division.holders));
-    parts.holding = Divide(shapes, parts.tree, division, allowed);
+    const int leaves = division.holders * (division.coupled ? kCoupledLeaves : 1);
+    parts.tree = ObjectTree(BoxesOf(shapes), static_cast<std::uint32_t>(leaves));
+    for (std::uint32_t leaf = 0; leaf < parts.tree.leaves(); ++leaf)
+      parts.copies += parts.tree.ObjectsIn(leaf).size();
+    parts.holding = division.coupled ? Holding::Dealt(division.holders, parts.tree.leaves())
+                                     : Divide(shapes, parts.tree, division, allowed);
     Build(shapes, kernel, world.rank, parts);
+    if (!division.coupled) parts.scene.shapes = {};
     return true;
   });
   parts.build_s = watch.Lap();
@@ -117,9 +128,31 @@ SceneParts<Real> PartsForAll(const World& world, const SceneChoice& choice,
   return parts;
 }
 
+template <class Real>
+std::vector<LeafLoad> LoadsOf(const SceneParts<Real>& parts) {
+  std::vector<LeafLoad> loads(parts.tree.leaves());
+  for (std::uint32_t leaf = 0; leaf < parts.tree.leaves(); ++leaf)
+    loads[leaf].bytes = BytesToBuild(parts.scene.shapes, parts.tree.ObjectsIn(leaf));
+  return loads;
+}
+
+template <class Real>
+void Hold(const World& world, Holding holding, const std::string& kernel, SceneParts<Real>& parts) {
+  parts.holding = std::move(holding);
+  OnAllRanks(world, [&] {
+    Build(std::exchange(parts.scene.shapes, {}), kernel, world.rank, parts);
+    return true;
+  });
+}
+
 template SceneParts<float> PartsForAll(const World&, const SceneChoice&, const std::string&,
                                        Division);
 template SceneParts<double> PartsForAll(const World&, const SceneChoice&, const std::string&,
                                         Division);
+
+template std::vector<LeafLoad> LoadsOf(const SceneParts<float>&);
+template std::vector<LeafLoad> LoadsOf(const SceneParts<double>&);
+template void Hold(const World&, Holding, const std::string&, SceneParts<float>&);
+template void Hold(const World&, Holding, const std::string&, SceneParts<double>&);
 
 }  // namespace stipple::raytracer

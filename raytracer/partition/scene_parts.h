@@ -28,7 +28,7 @@ struct LeafPart {
 
 template <class Real>
 struct SceneParts {
-  Scene scene;  // without shapes
+  Scene scene;  // without shapes, but those that Hold still needs
   ObjectTree tree;
   Holding holding;
   std::vector<std::unique_ptr<LeafPart<Real>>> held;  // by leaf; null: others hold it
@@ -45,12 +45,25 @@ struct Division {
   int holders = 1;       // ranks 0 to holders - 1 hold objects
   double replicate = 0;  // share of the leaves that each holds; 0: one leaf each
   bool fill = false;     // instead: as many leaves each as fit into memory
+  bool coupled = false;  // several leaves for each rank, dealt in turn; Hold will change that
 };
 
 /// The chosen scene, divided. Every rank calls it. Errors: StoppedTogether.
 template <class Real>
 SceneParts<Real> PartsForAll(const World& world, const SceneChoice& choice,
                              const std::string& kernel, Division division);
+
+/// What each leaf of a scene takes; its work is 0. Before Hold.
+template <class Real>
+std::vector<LeafLoad> LoadsOf(const SceneParts<Real>& parts);
+
+/// Bytes that this rank may take for objects. Every rank calls it.
+std::uint64_t AllowedBytes(const World& world, const SceneChoice& choice);
+
+/// Another division of a coupled scene's leaves: every rank builds what it lacks, and lets go of
+/// what others hold now.
+template <class Real>
+void Hold(const World& world, Holding holding, const std::string& kernel, SceneParts<Real>& parts);
 
 }  // namespace stipple::raytracer
 

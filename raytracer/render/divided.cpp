@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdio>
 #include <deque>
+#include <numeric>
 
 #include "raytracer/partition/find_row.h"
 #include "raytracer/partition/termination.h"
@@ -92,6 +93,7 @@ template <class Real>
 struct Neighbour {
   std::vector<Traveller<Real>> outgoing;
   std::uint32_t credits = kCredits;
+  std::uint64_t sent = 0;            // packages to it
   std::deque<std::size_t> packages;  // of it, not worked off: rays
   std::size_t followed = 0;          // rays of the first of them
   std::uint32_t worked_off = 0;      // packages that it has not been told of
@@ -181,6 +183,7 @@ class Worker {
     Neighbour<Real>& neighbour = neighbours_[static_cast<std::size_t>(to)];
     if (neighbour.credits == 0) return false;
     --neighbour.credits;
+    ++neighbour.sent;
     std::vector<Traveller<Real>>& rays = neighbour.outgoing;
     const std::size_t count = std::min(rays.size(), choice_.package);
     const auto first = rays.end() - static_cast<std::ptrdiff_t>(count);
@@ -318,10 +321,16 @@ class Worker {
     RecordCounts(tracer_.counts());
     if (!assembly_) {
       mail_.Post(assembling_, kLast, std::span<const std::byte>());
-      return;
+    } else {
+      Mark(Moment::kAssembleBegins);
+      while (assembly_->finished < choice_.holders - 1) TakeLetter(true);
     }
-    Mark(Moment::kAssembleBegins);
-    while (assembly_->finished < choice_.holders - 1) TakeLetter(true);
+    while (!HasAllCredits()) TakeLetter(true);  // no letter may be left
+  }
+  bool HasAllCredits() const {
+    return std::ranges::all_of(neighbours_, [](const Neighbour<Real>& neighbour) {
+      return neighbour.credits == kCredits - neighbour.sent % (kCredits / 2);
+    });
   }
 
   const World& world_;
@@ -344,20 +353,48 @@ class Worker {
   Progress progress_;
 };
 
+/// The bundles that the host still has.
+class BundlesLeft {
+ public:
+  BundlesLeft(const DividedChoice& choice, std::uint32_t count) : choice_(choice), left_(count) {
+    std::iota(left_.begin(), left_.end(), 0U);
+  }
+
+  std::size_t count() const { return left_.size(); }
+  /// One for `rank`: the first that begins in what it holds, else the first of all.
+  std::uint32_t Take(int rank) {
+    auto chosen = left_.begin();
+    if (!choice_.homes.empty()) {
+      const auto near = std::ranges::find_if(left_, [&](std::uint32_t bundle) {
+        const std::uint32_t leaf = choice_.homes[bundle];
+        return leaf != DividedChoice::kNowhere && choice_.holding->Holds(rank, leaf);
+      });
+      if (near != left_.end()) chosen = near;
+    }
+    const std::uint32_t bundle = *chosen;
+    left_.erase(chosen);
+    return bundle;
+  }
+
+ private:
+  const DividedChoice& choice_;
+  std::deque<std::uint32_t> left_;  // in their order
+};
+
 /// The host: bundles out, what was found in.
 [[gnu::noinline]] Raster Serve(Mail& mail, const DividedChoice& choice) {
   MarkHost();
-  const Bundles bundles(choice.points);
-  std::uint32_t next = 0;
+  BundlesLeft left(choice, Bundles(choice.points).count());
   Assembly assembly(choice.points);
   while (assembly.finished < choice.holders) {
     Letter letter;
     mail.Take(true, letter);
     if (letter.tag == kAsk) {
-      mail.Post(letter.from, kGiven, next < bundles.count() ? next : PointSupply::kNoBundle);
-      if (next == bundles.count()) continue;
-      RecordBundlesLeft(bundles.count() - ++next);
-      if (next == bundles.count()) Mark(Moment::kSupplyEnds);
+      const bool some = left.count() > 0;
+      mail.Post(letter.from, kGiven, some ? left.Take(letter.from) : PointSupply::kNoBundle);
+      if (!some) continue;
+      RecordBundlesLeft(static_cast<std::uint32_t>(left.count()));
+      if (left.count() == 0) Mark(Moment::kSupplyEnds);
     } else if (letter.tag == kFound) {
       assembly.Take(letter.Of<FoundPart>());
     } else if (letter.tag == kLast) {

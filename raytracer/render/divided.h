@@ -13,7 +13,9 @@
 #define STIPPLE_RAYTRACER_RENDER_DIVIDED_H
 
 #include <cstddef>
+#include <cstdint>
 #include <string_view>
+#include <vector>
 
 #include "raytracer/render/render.h"
 #include "raytracer/render/travel.h"
@@ -38,6 +40,12 @@ struct DividedChoice {
   PartitionChoice points;
   int holders = 1;           // ranks that hold objects and trace: all, or all but the host
   std::size_t package = 64;  // rays in a message, at most
+
+  // Where the host is to prefer bundles that begin in what a rank holds: by bundle a leaf, or
+  // kNowhere. Empty: in their order.
+  static constexpr std::uint32_t kNowhere = 0xffffffff;
+  std::vector<std::uint32_t> homes{};
+  const Holding* holding = nullptr;
 };
 
 /// Every rank calls it; the host passes no tracer.

@@ -91,7 +91,7 @@ class SamplerIn final : public Sampler {
     return result;
   }
 
-  EyeRays<Real> eye_rays_;
+  SampleRays<Real> eye_rays_;
   bool adaptive_;
   Tracer<Real, kRules> tracer_;
 };
@@ -104,7 +104,7 @@ ImageSize RasterOf(ImageSize image, Samples samples) {
 }
 
 template <class Real>
-EyeRays<Real>::EyeRays(const View& view, ImageSize raster, Samples samples)
+SampleRays<Real>::SampleRays(const View& view, ImageSize raster, Samples samples)
     : width_(static_cast<RasterPoint>(raster.width)),
       camera_(view, raster),
       offsets_(OffsetsOf(samples)) {}
@@ -120,9 +120,9 @@ std::unique_ptr<Sampler> MakeSampler(const Scene& scene, const Model<Real>& mode
       });
 }
 
-template class EyeRays<float>;
-template class EyeRays<double>;
-template class EyeRays<long double>;
+template class SampleRays<float>;
+template class SampleRays<double>;
+template class SampleRays<long double>;
 template std::unique_ptr<Sampler> MakeSampler(const Scene&, const Model<float>&,
                                               const Kernel<float>&, ShadingChoice, ImageSize,
                                               Samples);

@@ -32,9 +32,9 @@ struct SampleOffset {
 
 /// The rays through the points of a raster. Of adaptive sampling all that a point may get.
 template <class Real>
-class EyeRays {
+class SampleRays {
  public:
-  EyeRays(const View& view, ImageSize raster, Samples samples);
+  SampleRays(const View& view, ImageSize raster, Samples samples);
 
   /// Rays of each point.
   std::size_t count() const { return offsets_.size(); }

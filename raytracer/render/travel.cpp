@@ -15,7 +15,8 @@ class RankTracerIn final : public RankTracer<Real> {
       : parts_(parts),
         rank_(rank),
         eye_rays_(parts.scene.view, RasterOf(image, samples), samples),
-        shader_(parts.scene, shading, parts.rounding) {}
+        shader_(parts.scene, shading, parts.rounding),
+        leaf_work_(parts.tree.leaves()) {}
 
   void Begin(RasterPoint point, std::vector<Traveller<Real>>& rays, RayResult& found) override {
     shader_.counts().eye_rays += eye_rays_.count();
@@ -46,6 +47,7 @@ class RankTracerIn final : public RankTracer<Real> {
   }
 
   const RayCounts& counts() const override { return shader_.counts(); }
+  const std::vector<std::uint64_t>& leaf_work() const override { return leaf_work_; }
 
  private:
   /// Where it goes next. `stopped`: something stands before its light.
@@ -57,10 +59,12 @@ class RankTracerIn final : public RankTracer<Real> {
       if (static_cast<double>(ray.t) < next.enter) break;
       if (!parts_.holding.Holds(rank_, next.leaf))
         return parts_.holding.Next(std::span(way_).subspan(ray.seen), ray.point);
+      const std::uint64_t before = shader_.counts().Work();
       if (ray.to_light)
         stopped = parts_.held[next.leaf]->kernel->Occluded(ray.ray, ray.t, shader_.counts().tests);
       else
         Meet(*parts_.held[next.leaf], ray);
+      leaf_work_[next.leaf] += shader_.counts().Work() - before;
       if (stopped) break;
     }
     return RankTracer<Real>::kEnded;
@@ -142,9 +146,10 @@ class RankTracerIn final : public RankTracer<Real> {
 
   const SceneParts<Real>& parts_;
   int rank_;
-  EyeRays<Real> eye_rays_;
+  SampleRays<Real> eye_rays_;
   Shader<Real, kRules> shader_;
   std::vector<LeafOnWay> way_;
+  std::vector<std::uint64_t> leaf_work_;
 };
 
 }  // namespace

@@ -55,6 +55,8 @@ class RankTracer {
                       RayResult& found) = 0;
 
   virtual const RayCounts& counts() const = 0;
+  /// Tests done in each leaf.
+  virtual const std::vector<std::uint64_t>& leaf_work() const = 0;
 };
 
 /// `rank`: as `parts.holding` counts them. Parts must outlive it. Errors: UsageError for a kernel

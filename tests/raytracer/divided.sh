@@ -38,6 +38,9 @@ check 2 $divided --package 1
 check 3 $divided --partition tiled --replicate 0.7
 check 5 $divided --partition bundles --bundle 100 --package 7
 check 5 $divided --partition guided --replicate 1
+check 5 --objects coupled --partition bundles --bundle 100
+check 4 --objects coupled --replicate 0.5 --partition guided
+grep -q 'was foretold by the pilot' other.txt
 serial --scene rings --scene-size 2 --resolution 40x40 --samples 2 --precision float
 check 4 $divided --partition bundles --bundle 64 --select modulo
 serial --scene tree --scene-size 4 --resolution 40x40 --kernel embree
@@ -78,6 +81,6 @@ serial --scene balls --scene-size 3 --resolution 40x40
 check 4 --memory-limit 120K
 if timeout 100 "$mpiexec" --oversubscribe -n 4 "$raytracer" $scene --memory-limit 20K > no.txt 2>&1; then echo "20 kB were enough"; exit 1; fi
 grep -q 'divided among 4 ranks, 1 leaf each, the objects of one take up to 0\.[0-9]* MB .* 0.0 MB are allowed' no.txt || { cat no.txt; exit 1; }
-if "$raytracer" $scene --objects partitioned --samples adaptive > no.txt 2>&1; then echo "adaptive was not refused"; exit 1; fi
+if "$raytracer" $scene --objects coupled --samples adaptive > no.txt 2>&1; then echo "adaptive was not refused"; exit 1; fi
 grep -q -- '--samples N' no.txt
 echo "same picture, divided"

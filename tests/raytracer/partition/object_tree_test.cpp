@@ -138,5 +138,42 @@ TEST(Holding, ARayGoesToWhoCanFollowItFarthest) {
   EXPECT_EQ(holding.Next(std::vector<LeafOnWay>{{2, 0}, {0, 1}}, 1), 0);
 }
 
+std::vector<LeafLoad> SomeLoads(std::size_t count) {
+  Dice dice(6);
+  std::vector<LeafLoad> loads;
+  for (std::size_t i = 0; i < count; ++i)
+    loads.push_back({static_cast<std::uint64_t>(dice.In(0, 1) < 0.1 ? 10000 : dice.In(0, 1000)),
+                     static_cast<std::uint64_t>(dice.In(50, 150))});
+  return loads;
+}
+
+TEST(Holding, CoupledHoldsEachLeafWithinTheLimit) {
+  const std::vector<LeafLoad> loads = SomeLoads(32);
+  std::uint64_t all = 0;
+  for (const LeafLoad& load : loads) all += load.bytes;
+  for (const double share : {0.2, 0.3, 0.5, 0.75, 1.0}) {
+    const auto most = static_cast<std::uint64_t>(share * static_cast<double>(all));
+    const std::optional<Holding> holding = Holding::Coupled(8, loads, most);
+    ASSERT_TRUE(holding);
+    for (int rank = 0; rank < 8; ++rank) {
+      std::uint64_t bytes = 0;
+      for (const std::uint32_t leaf : holding->LeavesOf(rank)) bytes += loads[leaf].bytes;
+      EXPECT_LE(bytes, most);
+    }
+    for (std::uint32_t leaf = 0; leaf < 32; ++leaf)
+      EXPECT_TRUE(holding->Holds(holding->Next(std::vector<LeafOnWay>{{leaf, 0}}, 3), leaf));
+  }
+  EXPECT_FALSE(Holding::Coupled(8, loads, all / 16));
+}
+
+TEST(Holding, MoreMemoryMakesTheForetoldBalanceBetter) {
+  const std::vector<LeafLoad> loads = SomeLoads(32);
+  std::uint64_t all = 0;
+  for (const LeafLoad& load : loads) all += load.bytes;
+  EXPECT_GT(Holding::Dealt(8, 32).Balance(loads), 1.2);
+  EXPECT_LT(Holding::Coupled(8, loads, all / 2)->Balance(loads), 1.05);
+  EXPECT_EQ(Holding::Coupled(8, loads, all)->Balance(loads), 1);
+}
+
 }  // namespace
 }  // namespace stipple::raytracer
