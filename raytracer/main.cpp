@@ -24,7 +24,6 @@
 #include "raytracer/render/render.h"
 #include "raytracer/report.h"
 #include "raytracer/scene/load.h"
-#include "raytracer/scene/memory_need.h"
 #include "raytracer/scene/nff.h"
 #include "raytracer/scene/shared_scene.h"
 #include "raytracer/stopwatch.h"
@@ -172,7 +171,7 @@ template <class Real>
 std::uint64_t BytesFor(const World& world, const SceneParts<Real>& parts, const Options& options) {
   const std::uint64_t allowed = AllowedBytes(world, ChoiceOf(options));
   if (options.replicate == 0) return allowed;
-  const double whole = static_cast<double>(BytesToBuild(parts.scene.shapes));
+  const double whole = static_cast<double>(WholeBytes(parts));
   return std::min(allowed, static_cast<std::uint64_t>(options.replicate * whole));
 }
 

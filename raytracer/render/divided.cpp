@@ -246,6 +246,7 @@ class Worker {
   }
 
   void End() {
+    if (ended_) return;
     for (int child = 2 * world_.rank + 1; child <= 2 * world_.rank + 2; ++child)
       if (child < choice_.holders) mail_.Post(child, kEnd, std::span<const std::byte>());
     ended_ = true;
@@ -312,7 +313,7 @@ class Worker {
     else
       safra_.Receive(signal.signal, state, out);
     for (const Signal& one : out) mail_.Post(one.to, kSignal, DetectorSignal{signal.detector, one});
-    if (world_.rank == 0 && !ended_ && four_counters_.ended() && safra_.ended()) End();
+    if (world_.rank == 0 && four_counters_.ended() && safra_.ended()) End();
   }
 
   /// What was found goes to the assembling rank; that waits for all.

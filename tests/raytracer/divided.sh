@@ -39,7 +39,7 @@ check 3 $divided --partition tiled --replicate 0.7
 check 5 $divided --partition bundles --bundle 100 --package 7
 check 5 $divided --partition guided --replicate 1
 check 5 --objects coupled --partition bundles --bundle 100
-check 4 --objects coupled --replicate 0.5 --partition guided
+check 4 --objects coupled --replicate 0.8 --partition guided
 grep -q 'was foretold by the pilot' other.txt
 serial --scene rings --scene-size 2 --resolution 40x40 --samples 2 --precision float
 check 4 $divided --partition bundles --bundle 64 --select modulo
