@@ -56,6 +56,31 @@ class ColumnsVisitor {
       }
       while (top >= to) Close(*top--);
     }
+    /// Without a branch between enter and leave, as TakePlain (visit_sums.h).
+    std::size_t Block(const EventWord* words, std::size_t count, std::uint64_t offset) {
+      top = owner->stack_.Reserve(top, count);
+      limit = owner->stack_.Limit();
+      std::size_t i = 0;
+      for (; i < count; ++i) {
+        const std::uint64_t now = TimeOf(words[i]) + offset;
+        const auto region = static_cast<std::uint32_t>(words[i] & kRegionMask);
+        const std::uint64_t leave = (words[i] / kLeaveBit) & 1;
+        Frame* const place = top + 1 - leave;
+        if (now >= next || (static_cast<std::uint64_t>(place->region != region) & leave) != 0)
+            [[unlikely]]
+          break;
+        Spend(now);
+        *place = {region, places[region]};
+        Running& sum = sums[place->place];
+        const std::uint64_t outermost = sum.open == leave ? ~std::uint64_t{0} : 0;
+        sum.inclusive +=
+            outermost & ((now ^ (leave - 1)) - (leave - 1));  // an enter's is taken off
+        sum.calls += 1 - leave;
+        sum.open += 1 - 2 * leave;
+        top = place - leave;
+      }
+      return i;
+    }
     void Record(const EventWord* record, std::uint64_t ticks) {
       MoveTo(ticks);
       if (MovesFrames(KindOf(*record))) *this = owner->MoveFrames(*this, record);
