@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The open visits of a thread for a visitor that keeps something of its own in each frame and its
-// top in a register: as CallStack follows them, with all that is rare out of the way.
+// top in a register: as CallStack follows them, with all that is rare out of the way. (VisitStack
+// of visit_sums.h has frames of its own making and leaves jumps to its visitors, who must repair
+// sums.)
 #ifndef STIPPLE_ANALYSIS_STATS_FRAME_STACK_H
 #define STIPPLE_ANALYSIS_STATS_FRAME_STACK_H
 
@@ -29,6 +31,11 @@ class FrameStack {
     const std::ptrdiff_t depth = top - Bottom();
     frames_.resize(2 * frames_.size());
     return Bottom() + depth;
+  }
+  /// Room for so many frames more; returns the top.
+  Frame* Reserve(Frame* top, std::size_t frames) {
+    while (static_cast<std::size_t>(Limit() - top) < frames) top = Grow(top);
+    return top;
   }
   /// The innermost visit of the region, those above which were left unseen; `top` if there is none.
   Frame* Innermost(Frame* top, std::uint32_t region) {

@@ -9,7 +9,8 @@
 #include <mutex>
 #include <utility>
 
-#include "analysis/trace/call_stack.h"
+#include "analysis/stats/frame_stack.h"
+#include "analysis/trace/whole_scan.h"
 
 namespace stipple {
 namespace {
@@ -25,80 +26,157 @@ struct Running {
   }
 };
 
+/// An open visit.
+struct Frame {
+  std::uint32_t region;
+  std::uint32_t place;  // among the sums
+};
+
 class ColumnsVisitor {
  public:
+  struct Hot {
+    ColumnsVisitor* owner;
+    const std::uint32_t* places;
+    Running* sums;
+    Frame* top;
+    Frame* limit;
+    std::uint64_t last;
+    std::uint64_t next;  // when the column ends
+
+    void Function(std::uint32_t region, bool leave, std::uint64_t ticks) {
+      MoveTo(ticks);
+      if (!leave) {
+        Push(region, 1);
+        return;
+      }
+      const Frame* to = top;
+      if (top->region != region) [[unlikely]] {
+        to = owner->stack_.Innermost(top, region);
+        if (to->region != region) return;  // was never entered
+      }
+      while (top >= to) Close(*top--);
+    }
+    /// Without a branch between enter and leave, as TakePlain (visit_sums.h).
+    std::size_t Block(const EventWord* words, std::size_t count, std::uint64_t offset) {
+      top = owner->stack_.Reserve(top, count);
+      limit = owner->stack_.Limit();
+      std::size_t i = 0;
+      for (; i < count; ++i) {
+        const std::uint64_t now = TimeOf(words[i]) + offset;
+        const auto region = static_cast<std::uint32_t>(words[i] & kRegionMask);
+        const std::uint64_t leave = (words[i] / kLeaveBit) & 1;
+        Frame* const place = top + 1 - leave;
+        if (now >= next || (static_cast<std::uint64_t>(place->region != region) & leave) != 0)
+            [[unlikely]]
+          break;
+        Spend(now);
+        *place = {region, places[region]};
+        Running& sum = sums[place->place];
+        const std::uint64_t outermost = sum.open == leave ? ~std::uint64_t{0} : 0;
+        sum.inclusive +=
+            outermost & ((now ^ (leave - 1)) - (leave - 1));  // an enter's is taken off
+        sum.calls += 1 - leave;
+        sum.open += 1 - 2 * leave;
+        top = place - leave;
+      }
+      return i;
+    }
+    void Record(const EventWord* record, std::uint64_t ticks) {
+      MoveTo(ticks);
+      if (MovesFrames(KindOf(*record))) *this = owner->MoveFrames(*this, record);
+    }
+    void MoveTo(std::uint64_t ticks) {
+      if (ticks >= next) [[unlikely]]
+        *this = owner->EndColumns(*this, ticks);
+      Spend(ticks);
+    }
+    void Spend(std::uint64_t now) {
+      sums[top->place].exclusive += now - last;
+      last = now;
+    }
+    void Push(std::uint32_t region, std::uint64_t calls) {
+      if (top == limit) [[unlikely]] {
+        top = owner->stack_.Grow(top);
+        limit = owner->stack_.Limit();
+      }
+      *++top = {region, places[region]};
+      sums[top->place].calls += calls;
+      Open(*top);
+    }
+    void Open(const Frame& frame) {
+      Running& sum = sums[frame.place];
+      if (sum.open++ == 0) sum.inclusive -= last;
+    }
+    void Close(const Frame& frame) {
+      Running& sum = sums[frame.place];
+      if (--sum.open == 0) sum.inclusive += last;
+    }
+  };
+
   /// `place`: of each region of the process among the sums; the last sum is that of all.
   ColumnsVisitor(std::vector<std::uint32_t> place, std::size_t sums,
                  std::vector<std::uint64_t> column_ends)
-      : place_(std::move(place)), running_(sums), before_(sums), ends_(std::move(column_ends)) {
-    columns_.resize(ends_.size(), std::vector<Running>(sums));
+      : place_(std::move(place)),
+        running_(sums),
+        before_(sums),
+        ends_(std::move(column_ends)),
+        columns_(ends_.size(), std::vector<Running>(sums)),
+        stack_({RegionCount(), static_cast<std::uint32_t>(sums - 1)}) {
+    hot_ = {this, place_.data(), running_.data(), stack_.Bottom(), stack_.Limit(), 0, ends_[0]};
   }
+  ColumnsVisitor(const ColumnsVisitor&) = delete;
+  ColumnsVisitor& operator=(const ColumnsVisitor&) = delete;
 
-  void Function(std::uint32_t region, bool leave, std::uint64_t ticks) {
-    MoveTo(ticks);
-    stack_.Function(region, leave);
-    Follow(leave ? 0 : 1);
-  }
-  void Record(const EventWord* record, std::uint64_t ticks) {
-    MoveTo(ticks);
-    const std::uint32_t context = stack_.context();
-    if (KindOf(*record) == RecordKind::kOpenFrames)
-      stack_.Begin(record, OpenRegions(record, static_cast<std::uint32_t>(place_.size())));
-    stack_.Record(record);
-    if (stack_.context() != context) Shrink(0);
-    Follow(0);
-  }
+  Hot Begin() const { return hot_; }
+  void End(const Hot& hot) { hot_ = hot; }
+
   void Finish(std::uint64_t last_ticks) {
-    MoveTo(last_ticks);
-    Shrink(0);
-    while (column_ < ends_.size()) EndColumn();
+    hot_.MoveTo(std::max(hot_.last, last_ticks));
+    while (hot_.top != stack_.Bottom()) hot_.Close(*hot_.top--);
+    while (column_ < ends_.size()) EndColumn(hot_.last);
   }
 
   /// By column and place.
   const std::vector<std::vector<Running>>& columns() const { return columns_; }
 
  private:
-  void MoveTo(std::uint64_t ticks) {
-    while (column_ < ends_.size() && ends_[column_] <= ticks) {
-      Spend(ends_[column_]);
-      EndColumn();
-    }
-    Spend(ticks);
+  static bool MovesFrames(RecordKind kind) {
+    return kind == RecordKind::kJumpPoint || kind == RecordKind::kUnwound ||
+           kind == RecordKind::kStackSwitch || kind == RecordKind::kThreadEnd ||
+           kind == RecordKind::kOpenFrames;
   }
-  void Spend(std::uint64_t now) {
-    if (now <= last_) return;
-    if (!open_.empty()) {
-      running_[open_.back()].exclusive += now - last_;
-      running_.back().exclusive += now - last_;
-    }
-    last_ = now;
+  std::uint32_t RegionCount() const { return static_cast<std::uint32_t>(place_.size() - 1); }
+
+  // By value: a hot part whose address is known elsewhere would not stay in registers.
+  Hot EndColumns(Hot hot, std::uint64_t ticks) {
+    for (; column_ < ends_.size() && ends_[column_] <= ticks; EndColumn(hot.last))
+      hot.Spend(std::max(hot.last, ends_[column_]));
+    hot.next = column_ < ends_.size() ? ends_[column_] : std::numeric_limits<std::uint64_t>::max();
+    return hot;
   }
-  void EndColumn() {
-    for (std::size_t i = 0; i < running_.size(); ++i) {
+  void EndColumn(std::uint64_t now) {
+    std::vector<Running>& column = columns_[column_++];
+    Running all;
+    for (std::size_t i = 0; i + 1 < running_.size(); ++i) {  // the last one is time in no region
       Running until = running_[i];
-      if (until.open > 0) until.inclusive += last_;
-      columns_[column_][i] = until.Since(before_[i]);
+      if (until.open > 0) until.inclusive += now;
+      column[i] = until.Since(before_[i]);
+      all.exclusive += column[i].exclusive;
       before_[i] = until;
     }
-    ++column_;
+    column.back() = all;
   }
-  /// Makes `open_` what the stack is now; a frame that is new has `calls`.
-  void Follow(std::uint64_t calls) {
-    const std::span<const std::uint32_t> frames = stack_.frames();
-    if (open_.size() > frames.size()) Shrink(frames.size());
-    while (open_.size() < frames.size()) {
-      const std::uint32_t place = place_[frames[open_.size()]];
-      open_.push_back(place);
-      Running& sum = running_[place];
-      sum.calls += calls;
-      if (sum.open++ == 0) sum.inclusive -= last_;
+  /// All frames are taken off and those that are left or come back put there: none has a call.
+  Hot MoveFrames(Hot hot, const EventWord* record) {
+    if (KindOf(*record) == RecordKind::kOpenFrames) {
+      for (const std::uint32_t region : OpenRegions(record, RegionCount())) hot.Push(region, 0);
+      stack_.BeginPoints(record);
     }
-  }
-  void Shrink(std::size_t depth) {
-    for (; open_.size() > depth; open_.pop_back()) {
-      Running& sum = running_[open_.back()];
-      if (--sum.open == 0) sum.inclusive += last_;
-    }
+    for (const Frame* f = hot.top; f != stack_.Bottom(); --f) hot.Close(*f);
+    hot.top = stack_.Record(hot.top, record);
+    hot.limit = stack_.Limit();
+    for (const Frame* f = stack_.Bottom(); f++ != hot.top;) hot.Open(*f);
+    return hot;
   }
 
   std::vector<std::uint32_t> place_;
@@ -107,9 +185,8 @@ class ColumnsVisitor {
   std::vector<std::uint64_t> ends_;
   std::vector<std::vector<Running>> columns_;
   std::size_t column_ = 0;
-  std::vector<std::uint32_t> open_;  // places of the frames, outermost first
-  std::uint64_t last_ = 0;
-  CallStack stack_;
+  FrameStack<Frame> stack_;
+  Hot hot_{};
 };
 
 /// Regions of the process; those that are not asked for share one place before the last.
@@ -237,7 +314,7 @@ std::vector<RegionColumns> RegionColumnsOf(const Analysis& analysis, const Colum
   trace.ForEachOf(locations, "finding when functions ran", [&](const Location& l) {
     ColumnsVisitor visitor(PlacesOf(trace, trace.ProcessOf(l), cut.regions), cut.regions.size() + 2,
                            EndsOf(trace, l, cut.columns));
-    trace.Scan(l, visitor);
+    ScanWhole(trace, l, visitor);
     visitor.Finish(l.last_ticks);
     const std::lock_guard lock(adding);
     sums.Add(l, visitor.columns());

@@ -25,9 +25,16 @@ class RegionTimesVisitor {
     std::uint64_t as_caller = 0;  // and in which it was the innermost that is not MPI's
   };
 
+  /// A region of the process.
+  struct Met {
+    std::uint32_t index = 0;  // among those met; 0: not met
+    std::uint32_t is_mpi = 0;
+  };
+
   struct Hot {
     RegionTimesVisitor* owner;
     Sum* sums;
+    const Met* met;
     Frame* top;
     Frame* limit;
     std::uint64_t last;
@@ -47,6 +54,26 @@ class RegionTimesVisitor {
       }
       --top;
     }
+    /// Without a branch between enter and leave, as TakePlain (visit_sums.h).
+    std::size_t Block(const EventWord* words, std::size_t count, std::uint64_t offset) {
+      top = owner->stack_.Reserve(top, count);
+      limit = owner->stack_.Limit();
+      std::size_t i = 0;
+      for (; i < count; ++i) {
+        const std::uint64_t now = TimeOf(words[i]) + offset;
+        const auto region = static_cast<std::uint32_t>(words[i] & kRegionMask);
+        const std::uint64_t leave = (words[i] / kLeaveBit) & 1;
+        const Met& m = met[region];
+        Frame* const place = top + 1 - leave;
+        if (now >= next || m.index == 0 ||
+            (static_cast<std::uint64_t>(place->region != region) & leave) != 0) [[unlikely]]
+          break;
+        Spend(now);
+        *place = {region, m.index, m.is_mpi != 0 ? place[-1].caller : m.index};
+        top = place - leave;
+      }
+      return i;
+    }
     void Record(const EventWord* record, std::uint64_t ticks) {
       *this = owner->Record(*this, record, ticks);
     }
@@ -60,8 +87,7 @@ class RegionTimesVisitor {
   RegionTimesVisitor(const Trace& trace, const Location& l, const RegionQuestion& question)
       : process_(trace.ProcessOf(l)),
         groups_(question.groups),
-        index_(process_.RegionCount()),
-        is_mpi_(process_.RegionCount()),
+        met_(process_.RegionCount()),
         sums_of_(process_.RegionCount() + 1),
         sums_(question.groups.size()),
         stack_({process_.RegionCount(), 0, 0}) {
@@ -71,10 +97,11 @@ class RegionTimesVisitor {
       edges_.push_back({trace.TicksAt(l, s.end_ns), s.group, true});
     }
     std::ranges::sort(edges_, {}, &Edge::ticks);
-    for (std::size_t r = 0; r < is_mpi_.size(); ++r)
-      is_mpi_[r] = trace.regions()[process_.regions[r]].kind == RegionKind::kMpi;
+    for (std::size_t r = 0; r < met_.size(); ++r)
+      met_[r].is_mpi = trace.regions()[process_.regions[r]].kind == RegionKind::kMpi ? 1 : 0;
     hot_ = {this,
             sums_of_.data(),
+            met_.data(),
             stack_.Bottom(),
             stack_.Limit(),
             0,
@@ -117,7 +144,7 @@ class RegionTimesVisitor {
 
   // By value: a hot part whose address is known elsewhere would not stay in registers.
   Hot Enter(Hot hot, std::uint32_t region) {
-    std::uint32_t& index = index_[region];
+    std::uint32_t& index = met_[region].index;
     if (index == 0) {
       index = static_cast<std::uint32_t>(regions_.size());
       regions_.push_back(region);
@@ -126,7 +153,7 @@ class RegionTimesVisitor {
       hot.top = stack_.Grow(hot.top);
       hot.limit = stack_.Limit();
     }
-    const std::uint32_t caller = is_mpi_[region] != 0 ? hot.top->caller : index;
+    const std::uint32_t caller = met_[region].is_mpi != 0 ? hot.top->caller : index;
     *++hot.top = {region, index, caller};
     return hot;
   }
@@ -165,11 +192,10 @@ class RegionTimesVisitor {
   const std::vector<TimeGoesTo>& groups_;
   std::vector<Edge> edges_;
   std::size_t next_ = 0;
-  std::vector<std::uint32_t> index_;          // by region of the process; 0: not met
+  std::vector<Met> met_;                      // by region of the process
   std::vector<std::uint32_t> regions_ = {0};  // those met, from 1 on
-  std::vector<std::uint8_t> is_mpi_;
-  std::vector<Sum> sums_of_;            // of those met, up to now
-  std::vector<std::vector<Sum>> sums_;  // by group
+  std::vector<Sum> sums_of_;                  // of those met, up to now
+  std::vector<std::vector<Sum>> sums_;        // by group
   FrameStack<Frame> stack_;
   Hot hot_{};
 };

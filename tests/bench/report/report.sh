@@ -2,9 +2,9 @@
 # Sourced by tests/bench/run: what a report costs, its archive new to the reader, without a display.
 run_report() {
   local events=${BENCH_REPORT_EVENTS:-1e8} archive=$work/report.stipple round
-  echo "The report of an archive of $events function events on one rank: CPU time and memory of the whole command, three times."
+  echo "The report of an archive of $events function events on 9 ranks, which pass messages: CPU time and memory of the whole command, three times."
   echo "The archive is opened for the first time each time (what is kept beside it is removed)."
-  "$build/tests/bench_reader" --write "$events" "$archive" || return 1
+  "$build/tests/bench_store" write "$archive" "$events" 9 || return 1
   cat "$archive"/* >/dev/null
   for round in 1 2 3; do
     find "$archive" -type f ! -name '*.stream' -delete
