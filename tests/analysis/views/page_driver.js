@@ -142,8 +142,12 @@
     // Each panel follows the range or says that it does not.
     all("section.panel svg[role=img]").forEach(function (picture) {
       var name = picture.getAttribute("class").split(" ")[0].slice(5), note = picture.closest("section.panel").querySelector(".note");
-      if (["detail", "phase-bars", "accuracy", "dials", "now"].indexOf(name) >= 0) return;
+      if (["detail", "accuracy", "dials", "now"].indexOf(name) >= 0) return;
       expect(picture.querySelector(":scope > g.live") || (note && note.textContent.indexOf("whole run") === 0), name + " neither follows nor says so");
+    });
+    ["waits", "single-waits", "phases", "efficiency", "critical-path"].forEach(function (id) {
+      var section = byId(id), note = section && section.querySelector(".note");
+      expect(!section || (note && note.textContent.indexOf("whole run") === 0), id + " does not say that it shows the whole run");
     });
     var functions = byId("functions-table");
     if (functions && data.functions) {
