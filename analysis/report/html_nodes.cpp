@@ -187,7 +187,7 @@ std::string TimePage(const ReportInput& input, const ViewInput& views) {
     text += TablePanel(views, {UtilisationByRow(views, 96)}, ContourView,
                        fmt::format("Utilisation by {} and time", noun), "contour", "main");
   return text +
-         TablePanel(views, {input.phases}, PhaseBarsView, "Whole run, by phase", "phase-bars",
+         TablePanel(views, {input.phases}, PhaseBarsView, "Utilisation by phase", "phase-bars",
                     "main") +
          TableSection(input.phases, "Phases", "phases", input.phases_text, input.timeline, "main") +
          PanelRow(EfficiencyPanel(input) + TableSection(input.critical_path, "Critical path",

@@ -149,9 +149,11 @@ std::string CommunicationPage(const ReportInput& input, const ViewInput& views) 
   const std::string_view noun = NounFor(input.timeline);
   const int host = HostOf(input.timeline);
   return PanelRow(panels, "quarters") +
-         PanelRow(TablePanel(views, {input.sizes}, HistogramView, "By size", "sizes", "half") +
-                      TablePanel(views, {input.types}, HistogramView, "By tag", "types", "half"),
-                  "halves") +
+         PanelRow(
+             TablePanel(views, {input.sizes}, HistogramView, "Messages by size", "sizes", "half") +
+                 TablePanel(views, {input.types}, HistogramView, "Messages by tag", "types",
+                            "half"),
+             "halves") +
          PanelRow(WaitsSection(input.waits, input.finding.culprit, noun, host) +
                       SingleWaitsSection(input.longest_waits, input.timeline, noun, host),
                   "halves");

@@ -98,6 +98,13 @@ void Limit(Panel& panel) {
   panel.bins = std::move(merged);
 }
 
+/// What tells bars apart: "sizes" have one for each size.
+std::string AxisWords(const Table& table, const TableColumns& columns) {
+  std::string words = WordsFor(columns.IsHistogram() ? table.name : table.columns.front().name);
+  if (columns.IsHistogram() && words.ends_with('s')) words.pop_back();
+  return words;
+}
+
 std::vector<Panel> PanelsOf(const ViewInput& input) {
   std::vector<Panel> panels;
   for (const Table* table : input.tables) {
@@ -106,7 +113,7 @@ std::vector<Panel> PanelsOf(const ViewInput& input) {
     for (const std::size_t value : ChosenValues(*table, columns, input.columns)) {
       if (panels.size() == kMostPanels) return panels;
       const std::string& name = table->columns[value].name;
-      Panel panel{WordsFor(table->name) + ": " + WordsFor(name),
+      Panel panel{WordsFor(name) + " by " + AxisWords(*table, columns),
                   QuantityOf(name),
                   columns.IsHistogram(),
                   BinsOf(*table, columns, value),

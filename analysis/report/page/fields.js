@@ -103,6 +103,6 @@ panelOf("switches", function (svg) {
 });
 
 // What is not followed says so.
-["sizes", "types", "callpaths"].forEach(function (name) {
-  panelOf(name, saysWhole);
+["sizes", "types", "callpaths", "waits", "single-waits", "phase-bars", "phases", "efficiency", "critical-path"].forEach(function (id) {
+  if (hasTime && byId(id)) watchers.push(function () { if (isWhole()) setNote(byId(id), null); else saysWhole(byId(id)); });
 });

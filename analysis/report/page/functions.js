@@ -4,7 +4,10 @@
 (function () {
   var table = hasTime && byId("functions-table"), series = data.functions;
   if (!table) return;
-  if (!series) return watchers.push(function () { if (isWhole()) setNote(table, null); else saysWhole(table); });
+  // Of a large archive functions are not known over time (report/report_input.cpp).
+  if (!series) return watchers.push(function () {
+    setNote(table, isWhole() ? null : "whole run \u00b7 this part: stipple stats ARCHIVE --table profile --from " + range.from.toPrecision(6) + " --to " + range.to.toPrecision(6));
+  });
   var functions = series.list.map(function (f) {
     return {estimated: f.estimated, calls: sumsOf(numbersOf(f.calls)), inclusive: stepSums(f.inclusive), exclusive: stepSums(f.exclusive)};
   });

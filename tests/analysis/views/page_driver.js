@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What a reader would do with a report, done by a script behind the page's own; what is wrong is
-// left in the body's data-problems, figures of a part of the run in data-states.
+// said on the console, with the figures of a part of the run.
 (function () {
-  var problems = [], doc = document.documentElement;
+  var problems = [], states = "", doc = document.documentElement;
   function all(selector, within) { return Array.from((within || document).querySelectorAll(selector)); }
   function byId(id) { return document.getElementById(id); }
   function expect(right, problem) { if (!right) problems.push(problem); }
@@ -138,13 +138,16 @@
     expect(coloured > pixels.length / 4 / 8, "the canvas is empty");
     look("zoomed");
     var table = byId("states-table");
-    if (table) document.body.dataset.states = JSON.stringify(Array.from(table.tBodies[0].rows, function (row) { return Array.from(row.cells).slice(1).map(function (cell) { return Number(cell.dataset.v); }); }));
-    document.body.dataset.range = text.textContent;
+    if (table) states = JSON.stringify(Array.from(table.tBodies[0].rows, function (row) { return Array.from(row.cells).slice(1).map(function (cell) { return Number(cell.dataset.v); }); }));
     // Each panel follows the range or says that it does not.
     all("section.panel svg[role=img]").forEach(function (picture) {
       var name = picture.getAttribute("class").split(" ")[0].slice(5), note = picture.closest("section.panel").querySelector(".note");
-      if (["detail", "phase-bars", "accuracy", "dials", "now"].indexOf(name) >= 0) return;
+      if (["detail", "accuracy", "dials", "now"].indexOf(name) >= 0) return;
       expect(picture.querySelector(":scope > g.live") || (note && note.textContent.indexOf("whole run") === 0), name + " neither follows nor says so");
+    });
+    ["waits", "single-waits", "phases", "efficiency", "critical-path"].forEach(function (id) {
+      var section = byId(id), note = section && section.querySelector(".note");
+      expect(!section || (note && note.textContent.indexOf("whole run") === 0), id + " does not say that it shows the whole run");
     });
     var functions = byId("functions-table");
     if (functions && data.functions) {
@@ -183,5 +186,5 @@
     var link = document.querySelector("a[data-from]");
     if (link) { link.click(); expect(doc.classList.contains("part"), "a wait does not lead to its moment"); byId("range-whole").click(); }
   }
-  document.body.dataset.problems = problems.slice(0, 12).join("; ") || "none";
+  console.log("DRIVEN " + location.pathname.replace(/.*\/|\.html$/g, "") + ": " + (problems.slice(0, 12).join("; ").replace(/\s+/g, " ") || "none") + " " + states);
 })();

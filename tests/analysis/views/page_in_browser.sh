@@ -20,15 +20,27 @@ browser --dump-dom about:blank | grep -q '<html' || { echo "$chromium does not w
 bad=0
 fail() { echo "FAIL: $*"; bad=1; }
 
-# driven PAGE NAME [FLAG...]: the page as it stands after its own script and the driver.
-driven() {
-  local page=$1 name=$2
-  shift 2
-  { cat "$page"; echo "<script>"; cat "$here/page_driver.js"; echo "</script>"; } >"$work/driven.html"
-  browser "$@" --dump-dom "file://$work/driven.html" >"$work/dom"
-  if grep CONSOLE "$work/err"; then fail "$name: a message on the console"; fi
-  grep -q 'data-problems="none"' "$work/dom" ||
-    fail "$name: $(grep -o 'data-problems="[^"]*"' "$work/dom" || echo "the script did not end")"
+# take PAGE...: to be driven with the others of one start of the browser, each in a frame of its own.
+taken=()
+take() {
+  local page
+  for page in "$@"; do
+    { cat "$page"; echo "<script>"; cat "$here/page_driver.js"; echo "</script>"; } >"$work/driven/$(basename "$page")"
+    taken+=("$(basename "$page" .html)")
+  done
+}
+# drive NOTE [FLAG...]: all that were taken; each page's driver says what it found on the console, where nothing else may stand.
+drive() {
+  local note=$1 name
+  shift
+  for name in "${taken[@]}"; do echo "<iframe src=driven/$name.html width=1400 height=1000></iframe>"; done >"$work/frames.html"
+  browser "$@" --dump-dom "file://$work/frames.html" >/dev/null
+  if grep CONSOLE "$work/err" | grep -v '"DRIVEN '; then fail "a message on the console$note"; fi
+  for name in "${taken[@]}"; do
+    grep -qF "\"DRIVEN $name: none" "$work/err" ||
+      fail "$name$note: $(grep -o "\"DRIVEN $name: .*" "$work/err" || echo "the script did not end")"
+  done
+  taken=()
 }
 
 # on_paper PAGE NAME [FLAG...]: every page's heading and every panel's stand in the PDF.
@@ -45,30 +57,21 @@ on_paper() {
   return 0
 }
 
-mkdir "$work/pages"
+mkdir "$work/pages" "$work/driven"
 "$samples" "$work/pages" >"$work/samples" || fail "sample_reports: $?"
-for page in "$work"/pages/*.html; do driven "$page" "$(basename "$page" .html)"; done
-driven "$work/pages/nine.html" "nine in the dark" --force-dark-mode --blink-settings=preferredColorScheme=0
+take "$work/pages/nine.html"
+drive " in the dark" --force-dark-mode --blink-settings=preferredColorScheme=0
 on_paper "$work/pages/nine.html" nine
 on_paper "$work/pages/thousand.html" thousand
 perl -0pe 's/<script.*?<\/script>//gs' "$work/pages/nine.html" >"$work/still.html"
 on_paper "$work/still.html" "nine without scripts"
+take "$work"/pages/*.html
 
-# A run that was recorded: the second and third quarter of it as the page shows it and as the table says it.
+# A run that was recorded.
 "$stipple" report "$archives/format-1.stipple" -o "$work/run.html" >/dev/null || fail "stipple report: $?"
 "$stipple" compare "$archives/format-1.stipple" "$archives/format-1-compacted.stipple" -o "$work/both.html" >/dev/null ||
   fail "stipple compare: $?"
-driven "$work/both.html" compare
-driven "$work/run.html" run
-span=$("$stipple" info --json "$archives/format-1.stipple" | grep -oE '"span_s": ?[0-9.e-]+' | grep -oE '[0-9.e-]+$')
-"$stipple" stats "$archives/format-1.stipple" --table states --format csv --from "$(awk "BEGIN{printf \"%.9f\", $span/4}")" \
-  --to "$(awk "BEGIN{printf \"%.9f\", $span*3/4}")" 2>/dev/null | tail -n +2 | cut -d, -f2- >"$work/table"
-grep -oE 'data-states="[^"]*"' "$work/dom" | grep -oE '\[[^][]*\]' | tr -d '[]' >"$work/page"
-[ -s "$work/page" ] || fail "the page has no states of a part"
-paste -d, "$work/table" "$work/page" | awk -F, -v span="$span" '
-  { n = NF / 2; for (i = 1; i <= n; ++i) { if ($i == "") continue; d = $i - $(i + n); if (d < 0) d = -d
-      if (d > span / 2000) { print "state " i " of row " NR ": " $i " in the table, " $(i + n) " on the page"; bad = 1 } } }
-  END { exit bad }' || fail "the range does not show what the table says"
+take "$work/run.html" "$work/both.html"
 
 # Archives that lack something, or nearly all, give a page all the same, which says so.
 mkdir "$work/empty.stipple"
@@ -82,7 +85,19 @@ for kind in empty damaged cut zero; do
   "$stipple" report "$work/$kind.stipple" -o "$work/$kind.html" >"$work/out" 2>&1
   status=$?
   [ $status = 0 ] || { [ $status = 2 ] && ! [ -e "$work/$kind.html" ] && grep -q . "$work/out"; } || fail "$kind: exit $status: $(cat "$work/out")"
-  if [ -e "$work/$kind.html" ]; then driven "$work/$kind.html" "$kind"; fi
+  if [ -e "$work/$kind.html" ]; then take "$work/$kind.html"; fi
 done
+drive ""
+
+# The second and third quarter of the run that was recorded, as the page shows it and as the table says it.
+span=$("$stipple" info --json "$archives/format-1.stipple" | grep -oE '"span_s": ?[0-9.e-]+' | grep -oE '[0-9.e-]+$')
+"$stipple" stats "$archives/format-1.stipple" --table states --format csv --from "$(awk "BEGIN{printf \"%.9f\", $span/4}")" \
+  --to "$(awk "BEGIN{printf \"%.9f\", $span*3/4}")" 2>/dev/null | tail -n +2 | cut -d, -f2- >"$work/table"
+grep -o '"DRIVEN run: .*' "$work/err" | grep -oE '\[[^][]*\]' | tr -d '[]' >"$work/page"
+[ -s "$work/page" ] || fail "the page has no states of a part"
+paste -d, "$work/table" "$work/page" | awk -F, -v span="$span" '
+  { n = NF / 2; for (i = 1; i <= n; ++i) { if ($i == "") continue; d = $i - $(i + n); if (d < 0) d = -d
+      if (d > span / 2000) { print "state " i " of row " NR ": " $i " in the table, " $(i + n) " on the page"; bad = 1 } } }
+  END { exit bad }' || fail "the range does not show what the table says"
 [ $bad = 0 ] && echo "pages work in $("$chromium" --version)"
 exit $bad
