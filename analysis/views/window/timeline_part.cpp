@@ -231,7 +231,7 @@ void TimelinePart::AddVisit(const Area& area, const std::string& name, const Vis
           TintOf(name, visit.region));
   const std::string text = area.width < 24 ? "" : ShortenEnd(name, area.width - 6, kVisitText);
   if (!text.empty())
-    AddText(visits, {area.left + 3, area.top + area.height / 2}, text,
+    AddText(visit_names, {area.left + 3, area.top + area.height / 2}, text,
             {.size = kVisitText, .colour = kInk});
 }
 

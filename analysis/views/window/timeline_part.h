@@ -75,6 +75,7 @@ class TimelinePart {
 
   Layer states{"states", {}};
   Layer visits{"visits", {}};
+  Layer visit_names{"names", {}};  // apart, so that neighbours are painted by one program
   Layer labels{"labels", {}};
   Layer axis_layer{"axis", {}};
   Layer messages{"messages", {}};
