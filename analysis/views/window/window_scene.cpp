@@ -71,7 +71,8 @@ void WindowScene::UpdateTimeline(const ViewState& state, bool moving) {
   for (const int rank : state.ranks()) key += ' ' + std::to_string(rank);
   if (key == data_key_) return;
   data_ =
-      AskTimeline(source_, state, effort, TimelinePart::RowsForVisits(state.ranks().size(), area));
+      AskTimeline(source_, state, effort, TimelinePart::RowsForVisits(state.ranks().size(), area),
+                  moving ? &wide_visits_ : nullptr);
   timeline_ = TimelinePart(data_, area, culprit(), effort);
   data_key_ = std::move(key);
 }

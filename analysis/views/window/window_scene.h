@@ -89,6 +89,7 @@ class WindowScene {
   double width_ = 1400, height_ = 950;
   WindowLayout layout_;
   TimelineData data_;
+  WideVisits wide_visits_;
   TimelinePart timeline_;
   std::string data_key_;
   std::vector<std::pair<Area, Panel>> menu_;
