@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <vector>
 
@@ -15,13 +16,16 @@ namespace stipple {
 
 class WideVisits {
  public:
-  /// As the source answers, except that visits may end outside the span.
+  /// As the source answers, except that visits may end outside the span, and that what was too
+  /// many is not asked for again nearby until the span is shorter.
   VisitsOfSpan Of(const WindowSource& source, int rank, std::int64_t begin_ns, std::int64_t end_ns,
                   std::size_t most);
 
  private:
+  static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
   struct Wide {
-    std::int64_t begin_ns = 0, end_ns = 0;
+    std::int64_t begin_ns = 0, end_ns = -1;
+    std::int64_t too_many_ns = kNever;  // a span as long as this has too many visits
     std::vector<VisitSpan> visits;
   };
   std::map<int, Wide> by_rank_;

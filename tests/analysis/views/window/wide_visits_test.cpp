@@ -16,8 +16,9 @@ namespace {
 
 TEST(WideVisits, AreThoseOfTheSource) {
   const testing::FakeSource source;
-  WideVisits wide;
+  WideVisits few, many;
   std::mt19937_64 random(11);
+  int complete = 0;
   std::int64_t begin = 2'000'000'000, length = 1'000'000'000;
   for (int i = 0; i < 500; ++i) {
     begin = std::clamp<std::int64_t>(
@@ -25,15 +26,17 @@ TEST(WideVisits, AreThoseOfTheSource) {
     if (i % 20 == 0) length = 1 + static_cast<std::int64_t>(random() % 3'000'000'000);
     const std::size_t most = i % 3 == 0 ? 5 : 100;
     const VisitsOfSpan asked = source.VisitsOf(0, begin, begin + length, most);
-    const VisitsOfSpan found = wide.Of(source, 0, begin, begin + length, most);
-    ASSERT_EQ(found.complete, asked.complete) << i;
-    if (!asked.complete) continue;
+    const VisitsOfSpan found = (most == 5 ? few : many).Of(source, 0, begin, begin + length, most);
+    if (found.complete) ++complete;
+    ASSERT_TRUE(asked.complete || !found.complete) << i;
+    if (!found.complete) continue;
     ASSERT_EQ(found.visits.size(), asked.visits.size()) << i;
     for (std::size_t k = 0; k < found.visits.size(); ++k) {
       EXPECT_EQ(found.visits[k].begin_ns, asked.visits[k].begin_ns);
       EXPECT_EQ(found.visits[k].region, asked.visits[k].region);
     }
   }
+  EXPECT_GT(complete, 250) << "most are few enough";
 }
 
 }  // namespace
