@@ -7,6 +7,11 @@
 #include <iterator>
 
 namespace stipple {
+namespace {
+
+constexpr std::size_t kFewCorners = 60;
+
+}  // namespace
 
 PixelBox BoxOf(std::span<const Corner> corners) {
   if (corners.empty()) return {};
@@ -40,8 +45,13 @@ void AddChange(std::vector<PixelBox>& boxes, std::span<const Corner> before,
   after = after.subspan(same);
   const auto ends = std::mismatch(before.rbegin(), before.rend(), after.rbegin(), after.rend());
   const std::size_t same_end = whole_triangles(ends.first - before.rbegin());
-  AddBox(boxes, BoxOf(before.first(before.size() - same_end)));
-  AddBox(boxes, BoxOf(after.first(after.size() - same_end)));
+  for (const std::span<const Corner> changed :
+       {before.first(before.size() - same_end), after.first(after.size() - same_end)}) {
+    // Few may lie far apart, as the lines of a cursor do; many are neighbours.
+    const std::size_t each = changed.size() > kFewCorners ? changed.size() : 3;
+    for (std::size_t i = 0; i < changed.size(); i += each)
+      AddBox(boxes, BoxOf(changed.subspan(i, each)));
+  }
 }
 
 }  // namespace stipple

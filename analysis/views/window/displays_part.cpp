@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "analysis/views/matrix_view.h"
 #include "analysis/views/table_access.h"
 #include "analysis/views/view_list.h"
 
@@ -36,6 +37,7 @@ constexpr StatisticEntry kStatistics[kStatisticCount] = {
     {"switches", "switches", "switches_per_s"}};
 
 constexpr std::size_t kMostMatrixRanks = 130;
+constexpr double kLeastText = 9;  // smaller ones nobody reads
 
 View ViewNamed(std::string_view name) {
   for (const ViewEntry& entry : Views())
@@ -114,9 +116,7 @@ Scene DisplayScene(Panel panel, Statistic statistic, const DisplayTables& tables
   if (panel == Panel::kMatrix) {
     if (source.Ranks().size() > kMostMatrixRanks * 8) return {};
     table = source.MatrixUntil(std::llround(std::min(time_s, source.EndSeconds()) * 1e9));
-    input.messages = &table;
-    input.tables = {&table};
-    return view(input);
+    return MatrixPanelView(table, {.title = "Messages"});  // the window writes the heading
   }
   const StatisticEntry& of = kStatistics[static_cast<std::size_t>(statistic)];
   const bool status = panel == Panel::kStatus;
@@ -149,11 +149,15 @@ Layer Fitted(const Scene& scene, const Area& area) {
       shape.height *= scale;
     }
     if constexpr (std::is_same_v<Kind, TextShape>)
-      shape.style.size = std::max(7.0, std::round(shape.style.size * scale));
+      shape.style.size = std::round(shape.style.size * scale);
     return shape;
   };
   for (const Layer& layer : scene.layers)
-    for (const Shape& shape : layer.shapes) fitted.shapes.push_back(std::visit(place, shape));
+    for (const Shape& shape : layer.shapes) {
+      const auto* text = std::get_if<TextShape>(&shape);
+      if (text != nullptr && std::round(text->style.size * scale) < kLeastText) continue;
+      fitted.shapes.push_back(std::visit(place, shape));
+    }
   return fitted;
 }
 

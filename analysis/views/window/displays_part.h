@@ -39,7 +39,8 @@ Table ColumnOf(const Table& series, std::string_view value);
 Scene DisplayScene(Panel panel, Statistic statistic, const DisplayTables& tables,
                    const WindowSource& source, const Timeline& whole, double time_s);
 
-/// The scene's shapes, smaller if need be, in the middle of the area.
+/// The scene's shapes, smaller if need be, in the middle of the area; texts too small to be read
+/// are left out.
 Layer Fitted(const Scene& scene, const Area& area);
 
 }  // namespace stipple

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "analysis/stats/number.h"
+#include "analysis/views/layout.h"
 #include "analysis/views/text.h"
 
 namespace stipple {
@@ -27,8 +28,16 @@ std::string Ascii(const std::string& text) {
 
 std::string Length(std::int64_t ns) { return FormatSeconds(Seconds(ns)); }
 
-void AddMessage(std::vector<Fact>& facts, const RunMessage& m) {
-  facts.push_back({"message", fmt::format("{} \u2192 {}", m.sender, m.receiver)});
+/// As its row is called.
+std::string NameOfRank(const Timeline& whole, int rank) {
+  const auto row = std::ranges::find(whole.rows, rank, &TimelineRow::rank);
+  if (row == whole.rows.end() || row->name.empty()) return std::to_string(rank);
+  return CleanUtf8(row->name);
+}
+
+void AddMessage(std::vector<Fact>& facts, const RunMessage& m, const Timeline& whole) {
+  facts.push_back({"message", fmt::format("{} \u2192 {}", NameOfRank(whole, m.sender),
+                                          NameOfRank(whole, m.receiver))});
   facts.push_back({"tag", std::to_string(m.tag)});
   facts.push_back({"bytes", FormatCount(static_cast<std::int64_t>(m.bytes))});
   facts.push_back({"sent", ExactTime(Seconds(m.send_ns))});
@@ -53,9 +62,10 @@ TimeSpan SpanOf(const Picked& picked) {
   return {picked.time_s, picked.time_s};
 }
 
-std::vector<Fact> FactsOf(const Picked& picked, const WindowSource& source) {
+std::vector<Fact> FactsOf(const Picked& picked, const WindowSource& source, const Timeline& whole) {
   std::vector<Fact> facts;
-  facts.push_back({"rank", std::to_string(picked.rank)});
+  const std::string noun(NounFor(whole));
+  facts.push_back({noun, NameOfRank(whole, picked.rank)});
   facts.push_back({"at", ExactTime(picked.time_s)});
   if (picked.visit) {
     facts.push_back({"function", source.RegionName(picked.visit->region)});
@@ -72,10 +82,10 @@ std::vector<Fact> FactsOf(const Picked& picked, const WindowSource& source) {
     if (picked.call->idle_ns > 0) {
       facts.push_back({"waited", Length(picked.call->idle_ns)});
       if (picked.call->partner >= 0)
-        facts.push_back({"for rank", std::to_string(picked.call->partner)});
+        facts.push_back({"for " + noun, NameOfRank(whole, picked.call->partner)});
     }
   }
-  if (picked.message) AddMessage(facts, *picked.message);
+  if (picked.message) AddMessage(facts, *picked.message, whole);
   std::string path;
   for (const std::string& name : picked.path) path += (path.empty() ? "" : " \u203a ") + name;
   if (!path.empty()) facts.push_back({"within", path});

@@ -20,7 +20,7 @@ struct Fact {
 /// The picked thing's own span: what zooming to it shows.
 TimeSpan SpanOf(const Picked& picked);
 
-std::vector<Fact> FactsOf(const Picked& picked, const WindowSource& source);
+std::vector<Fact> FactsOf(const Picked& picked, const WindowSource& source, const Timeline& whole);
 /// "rank 3, MPI_Recv, 0.123456789 s to 0.123460000 s, message from rank 0 ..."; ASCII.
 std::string FactsLine(const Picked& picked, const WindowSource& source);
 

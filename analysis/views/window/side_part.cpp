@@ -75,7 +75,7 @@ Layer WindowScene::SideLayer(const ViewState& state) {
   Area room = side;
   room.height = std::max(0.0, side.height - menu_height - 3 * kLine - 40);
   if (state.picked) {
-    y = AddFacts(layer, room, y, FactsOf(*state.picked, source_));
+    y = AddFacts(layer, room, y, FactsOf(*state.picked, source_, whole_));
   } else {
     for (const char* line : {"click a state, a function, a letter or", "a line to see its facts",
                              "drag to zoom, b goes back", "h lists all keys"}) {

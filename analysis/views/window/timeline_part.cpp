@@ -24,7 +24,8 @@ constexpr double kMostPitch = 96;
 constexpr double kLeastPitchForVisits = 34;
 constexpr double kLevelHeight = 14;
 constexpr std::size_t kMostVisitsPerRow = 400;
-constexpr double kMostEventsLookedAt = 200'000;  // about 1 ms
+// Two events are a visit; a row may be this much sparser in the view than in the mean.
+constexpr double kMostEventsPerRow = 2 * 8 * kMostVisitsPerRow;
 constexpr double kVisitText = 10;
 constexpr double kMostStateHeight = 46;
 
@@ -95,7 +96,7 @@ void MakeMajority(Timeline& timeline) {
 }
 
 TimelineData AskTimeline(const WindowSource& source, const ViewState& state, const Effort& effort,
-                         bool rows_for_visits) {
+                         bool rows_for_visits, WideVisits* wide) {
   TimelineData data;
   const TimeSpan& span = state.visible();
   data.states = source.StatesIn(span.begin_s, span.end_s, effort.columns);
@@ -112,9 +113,13 @@ TimelineData AskTimeline(const WindowSource& source, const ViewState& state, con
   });
   const double expected =
       static_cast<double>(source.EventCount()) * span.length() / state.run().length();
-  if (!rows_for_visits || expected > kMostEventsLookedAt) return data;
+  if (!rows_for_visits ||
+      expected > kMostEventsPerRow * static_cast<double>(data.states.rows.size()))
+    return data;
   for (const TimelineRow& row : data.states.rows) {
-    data.visits.push_back(source.VisitsOf(row.rank, begin_ns, end_ns, kMostVisitsPerRow));
+    data.visits.push_back(wide != nullptr
+                              ? wide->Of(source, row.rank, begin_ns, end_ns, kMostVisitsPerRow)
+                              : source.VisitsOf(row.rank, begin_ns, end_ns, kMostVisitsPerRow));
     for (const VisitSpan& visit : data.visits.back().visits)
       data.names.try_emplace(visit.region, ShortName(source.RegionName(visit.region)));
   }
@@ -231,7 +236,7 @@ void TimelinePart::AddVisit(const Area& area, const std::string& name, const Vis
           TintOf(name, visit.region));
   const std::string text = area.width < 24 ? "" : ShortenEnd(name, area.width - 6, kVisitText);
   if (!text.empty())
-    AddText(visits, {area.left + 3, area.top + area.height / 2}, text,
+    AddText(visit_names, {area.left + 3, area.top + area.height / 2}, text,
             {.size = kVisitText, .colour = kInk});
 }
 

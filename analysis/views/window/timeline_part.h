@@ -17,6 +17,7 @@
 #include "analysis/views/scene.h"
 #include "analysis/views/state_runs.h"
 #include "analysis/views/window/view_state.h"
+#include "analysis/views/window/wide_visits.h"
 #include "analysis/views/window/window_layout.h"
 
 namespace stipple {
@@ -37,9 +38,9 @@ struct TimelineData {
   std::vector<RunMessage> messages;            // empty: too many, or none
   std::uint64_t message_count = 0;
 };
-/// `rows_for_visits`: whether rows are tall enough for names.
+/// `rows_for_visits`: whether rows are tall enough for names. `wide`: of a view that is moved.
 TimelineData AskTimeline(const WindowSource& source, const ViewState& state, const Effort& effort,
-                         bool rows_for_visits);
+                         bool rows_for_visits, WideVisits* wide = nullptr);
 
 /// "void ns::Name<int>(long)" as "ns::Name<int>": a name without its arguments.
 std::string ShortName(const std::string& name);
@@ -75,6 +76,7 @@ class TimelinePart {
 
   Layer states{"states", {}};
   Layer visits{"visits", {}};
+  Layer visit_names{"names", {}};  // apart, so that neighbours are painted by one program
   Layer labels{"labels", {}};
   Layer axis_layer{"axis", {}};
   Layer messages{"messages", {}};

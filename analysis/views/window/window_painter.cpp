@@ -205,8 +205,9 @@ void WindowPainter::Paint(vtkOpenGLRenderWindow& window) {
   gl->vtkglDisable(GL_CULL_FACE);
   gl->vtkglEnable(GL_SCISSOR_TEST);
   gl->vtkglClearColor(1, 1, 1, 1);
-  if (!corners_.empty()) Load(window);
-  texture_->Activate();
+  const bool any = !corners_.empty();
+  if (any) Load(window);
+  if (any) texture_->Activate();
   for (std::size_t i = 0; i < changed_.size(); ++i) {
     const PixelBox& box = changed_[i];
     if (box.empty()) continue;
@@ -214,7 +215,7 @@ void WindowPainter::Paint(vtkOpenGLRenderWindow& window) {
     gl->vtkglClear(GL_COLOR_BUFFER_BIT);
     for (const Run& run : runs[i]) Draw(window, run);
   }
-  texture_->Deactivate();
+  if (any) texture_->Deactivate();
   ink_array_->Release();
   gl->vtkglDisable(GL_SCISSOR_TEST);
   ShowParts(window, changed_);

@@ -71,7 +71,8 @@ void WindowScene::UpdateTimeline(const ViewState& state, bool moving) {
   for (const int rank : state.ranks()) key += ' ' + std::to_string(rank);
   if (key == data_key_) return;
   data_ =
-      AskTimeline(source_, state, effort, TimelinePart::RowsForVisits(state.ranks().size(), area));
+      AskTimeline(source_, state, effort, TimelinePart::RowsForVisits(state.ranks().size(), area),
+                  moving ? &wide_visits_ : nullptr);
   timeline_ = TimelinePart(data_, area, culprit(), effort);
   data_key_ = std::move(key);
 }
@@ -84,14 +85,18 @@ std::span<const ScenePart> WindowScene::Update(const ViewState& state, bool movi
   const std::string span = fmt::format("{} {} ", state.visible().begin_s, state.visible().end_s);
   Refresh(kHeader, size + (finding_ ? finding_->sentence : "-") + source_.Warning(),
           [&] { return HeaderLayer(state); });
-  Refresh(kOverview, size + span, [&] { return OverviewLayer(state); });
+  Refresh(kOverview, size, [&] { return OverviewLayer(); });
+  Refresh(kOverviewFrame, size + span, [&] { return OverviewFrame(state); });
   Refresh(kRows, size + data_key_, [&] { return RowsLayer(state); });
   Refresh(kCurves,
           size + data_key_ + fmt::format(" {}", layout_.curves.size()) +
               (layout_.curves.empty() ? "" : std::string(NameOf(layout_.curves[0].panel))),
           [&] { return CurvesLayer(); });
-  std::string displays = size + fmt::format("{} {} {}", tables_.ready, MomentOfDisplays(state),
-                                            static_cast<int>(state.statistic()));
+  // Without a cursor they show the end of the view, which moves in each frame: they wait for rest.
+  if (!moving || state.has_cursor() || parts_[kDisplays].version == 0)
+    moment_ = MomentOfDisplays(state);
+  std::string displays =
+      size + fmt::format("{} {} {}", tables_.ready, moment_, static_cast<int>(state.statistic()));
   for (const PlacedPanel& panel : layout_.displays)
     displays += fmt::format(" {}", static_cast<int>(panel.panel));
   Refresh(kDisplays, displays, [&] { return DisplaysLayer(state); });
@@ -127,7 +132,7 @@ Layer WindowScene::HeaderLayer(const ViewState& /*state*/) const {
   return layer;
 }
 
-Layer WindowScene::OverviewLayer(const ViewState& state) const {
+Layer WindowScene::OverviewLayer() const {
   Layer layer{"overview", {}};
   const Area area = OverviewPlot(layout_);
   const TimeAxis axis = OverviewAxis(whole_, area);
@@ -144,10 +149,17 @@ Layer WindowScene::OverviewLayer(const ViewState& state) const {
         StateRects(MakeStateRuns(ranks_only, grid, axis.width() / 2, kOverviewQuads), grid, axis);
   }
   AddTimeAxis(layer, axis, area.bottom());
+  return layer;
+}
+
+Layer WindowScene::OverviewFrame(const ViewState& state) const {
+  Layer layer{"overview frame", {}};
+  if (state.visible() == state.run()) return layer;
+  const Area area = OverviewPlot(layout_);
+  const TimeAxis axis = OverviewAxis(whole_, area);
   const double left = std::floor(axis.XOf(state.visible().begin_s)) + 0.5;
   const double right = std::max(left + 3, std::floor(axis.XOf(state.visible().end_s)) - 0.5);
-  if (!(state.visible() == state.run()))
-    AddFrame(layer, {left, area.top - 2.5, right - left, area.height + 4}, kInk, 2);
+  AddFrame(layer, {left, area.top - 2.5, right - left, area.height + 4}, kInk, 2);
   return layer;
 }
 
@@ -171,8 +183,9 @@ Layer WindowScene::RowsLayer(const ViewState& state) const {
     x = end + 14;
   }
   AddText(layer, {right, y}, note, {.size = 12, .colour = kSecondary, .anchor = Anchor::kEnd});
-  for (const Layer* of : {&timeline_.states, &timeline_.visits, &timeline_.labels,
-                          &timeline_.axis_layer, &timeline_.messages, &timeline_.letters})
+  for (const Layer* of :
+       {&timeline_.states, &timeline_.visits, &timeline_.visit_names, &timeline_.labels,
+        &timeline_.axis_layer, &timeline_.messages, &timeline_.letters})
     layer.shapes.insert(layer.shapes.end(), of->shapes.begin(), of->shapes.end());
   return layer;
 }
@@ -197,7 +210,6 @@ double WindowScene::MomentOfDisplays(const ViewState& state) const {
 
 Layer WindowScene::DisplaysLayer(const ViewState& state) const {
   Layer layer{"displays", {}};
-  const double moment = MomentOfDisplays(state);
   for (const PlacedPanel& placed : layout_.displays) {
     const double y = placed.area.top - kTitleHeight / 2;
     std::string title(NameOf(placed.panel));
@@ -210,7 +222,7 @@ Layer WindowScene::DisplaysLayer(const ViewState& state) const {
     const std::string fits = ShortenEnd(note, placed.area.right() - x, 12);
     AddText(layer, {x, y}, fits, {.size = 12, .colour = kSecondary});
     const Scene scene =
-        DisplayScene(placed.panel, state.statistic(), tables_, source_, whole_, moment);
+        DisplayScene(placed.panel, state.statistic(), tables_, source_, whole_, moment_);
     const Layer fitted = Fitted(scene, placed.area);
     layer.shapes.insert(layer.shapes.end(), fitted.shapes.begin(), fitted.shapes.end());
     if (fitted.shapes.empty())

@@ -55,12 +55,23 @@ class WindowScene {
   double OverviewTime(double x) const;
 
  private:
-  enum Part { kHeader, kOverview, kRows, kCurves, kDisplays, kSide, kOverlay, kPartCount };
+  enum Part {
+    kHeader,
+    kOverview,
+    kOverviewFrame,
+    kRows,
+    kCurves,
+    kDisplays,
+    kSide,
+    kOverlay,
+    kPartCount
+  };
   template <class Make>
   void Refresh(Part part, std::string key, Make make);
   void UpdateTimeline(const ViewState& state, bool moving);
   Layer HeaderLayer(const ViewState& state) const;
-  Layer OverviewLayer(const ViewState& state) const;
+  Layer OverviewLayer() const;
+  Layer OverviewFrame(const ViewState& state) const;
   Layer RowsLayer(const ViewState& state) const;
   Layer CurvesLayer() const;
   Layer DisplaysLayer(const ViewState& state) const;
@@ -74,9 +85,11 @@ class WindowScene {
   Timeline whole_;
   std::optional<Finding> finding_;
   DisplayTables tables_;
+  double moment_ = 0;  // that the displays show
   double width_ = 1400, height_ = 950;
   WindowLayout layout_;
   TimelineData data_;
+  WideVisits wide_visits_;
   TimelinePart timeline_;
   std::string data_key_;
   std::vector<std::pair<Area, Panel>> menu_;

@@ -2,8 +2,11 @@
 // bench_redraw [EVENTS] [DIRECTORY]: writes an archive of eight ranks with EVENTS function events
 // in all (default 1e8, 800 MB; one that is there is read again), one message per thousand, opens it
 // in a window and measures CPU time of this process per frame, software rendering included, at six
-// zooms: while moving, at rest, and when only the cursor has moved. Needs DISPLAY.
+// zooms: while moving, at rest, and when only the cursor has moved; with the panels that a window
+// begins with, and with the timeline alone. The floor is an empty window, painted whole. Needs
+// DISPLAY.
 #include <time.h>
+#include <vtkOpenGLRenderWindow.h>
 
 #include <algorithm>
 #include <array>
@@ -19,6 +22,7 @@
 #include "analysis/stats/window_source.h"
 #include "analysis/views/window/window.h"
 #include "analysis/views/window/window_canvas.h"
+#include "analysis/views/window/window_painter.h"
 #include "tests/analysis/archive_writer.h"
 
 namespace stipple {
@@ -121,10 +125,13 @@ void WriteRank(const std::string& path, std::int32_t rank, std::uint64_t events)
 
 struct Frames {
   std::vector<double> ms;
-  void Add(WindowCanvas& canvas) {
+  void Add(const auto& paint) {
     const double begin = CpuMilliseconds();
-    canvas.Render();
+    paint();
     ms.push_back(CpuMilliseconds() - begin);
+  }
+  void Add(WindowCanvas& canvas) {
+    Add([&] { canvas.Render(); });
   }
   void Print(const char* name, double zoom) {
     std::ranges::sort(ms);
@@ -166,6 +173,19 @@ double Measure(WindowCanvas& canvas, double zoom) {
   return std::max(moving.ms[moving.ms.size() / 2], rest.ms[rest.ms.size() / 2]);
 }
 
+void MeasureFloor(WindowCanvas& canvas) {
+  auto* window = vtkOpenGLRenderWindow::SafeDownCast(canvas.window());
+  WindowPainter painter;
+  Frames floor;
+  for (int i = 0; i < kFrames; ++i) {
+    painter.PaintAll();
+    floor.Add([&] { painter.Paint(*window); });
+  }
+  painter.ReleaseGraphicsResources();
+  canvas.Uncovered();
+  floor.Print("floor", 0);
+}
+
 int Main(std::uint64_t events, const std::string& directory) {
   const std::string problem = WhyNoDisplay();
   if (!problem.empty()) {
@@ -189,8 +209,16 @@ int Main(std::uint64_t events, const std::string& directory) {
     const double tables = CpuMilliseconds();
     canvas.scene().SetTables(AskTables(*source));
     std::printf("%-14s %6.0f ms of CPU, behind it\n", "tables", CpuMilliseconds() - tables);
-    for (const double zoom : {1.0, 0.1, 0.01, 1e-3, 1e-4, 1e-6})
-      worst = std::max(worst, Measure(canvas, zoom));
+    const auto measure_zooms = [&] {
+      MeasureFloor(canvas);
+      for (const double zoom : {1.0, 0.1, 0.01, 1e-3, 1e-4, 1e-6})
+        worst = std::max(worst, Measure(canvas, zoom));
+    };
+    measure_zooms();
+    for (std::size_t p = 0; p < kPanelCount; ++p)
+      if (canvas.state().Shows(static_cast<Panel>(p))) canvas.state().Toggle(static_cast<Panel>(p));
+    std::puts("timeline alone");
+    measure_zooms();
   }
   std::printf("worst          %6.2f ms; target %.0f\n", worst, kTarget_ms);
   return 0;
