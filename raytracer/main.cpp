@@ -19,6 +19,7 @@
 #include "raytracer/render/marks.h"
 #include "raytracer/render/picture.h"
 #include "raytracer/render/render.h"
+#include "raytracer/render/work_meter.h"
 #include "raytracer/report.h"
 #include "raytracer/scene/load.h"
 #include "raytracer/scene/nff.h"
@@ -60,6 +61,7 @@ Rendered RenderScene(const World& world, const Scene& scene, const Model<Real>& 
                                static_cast<std::uint64_t>(options.seed)};
   const ShadingChoice shading{depth, options.min_contribution};
   const auto sampler = MakeSampler(scene, model, kernel, shading, image, options.samples);
+  const WorkMeter meter(sampler->counts());
   return Render(world, *sampler, options.partition, choice, options.samples);
 }
 

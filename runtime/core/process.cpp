@@ -49,6 +49,9 @@ void CopyText(char (&to)[kBytes], const char* text) {
 
 /// The executable's file name without its directories.
 void ReadProgramName(char (&name)[256]) {
+  // A simulator's own program would be the answer below.
+  const char* simulated = kSimulated ? getenv("STIPPLE_PROGRAM") : nullptr;
+  if (simulated != nullptr) return CopyText(name, simulated);
   char path[512];
   const long bytes =
       Syscall(SYS_readlink, Argument("/proc/self/exe"), Argument(path), sizeof path - 1);
@@ -75,7 +78,7 @@ void WriteFileHeader(char* place, const Process& process, std::uint64_t realtime
   header.start_realtime_ns = realtime_ns;
   header.start_raw_ns = start.raw_ns;
   header.start_ticks = start.ticks;
-  header.clock = ClockKind::kTsc;
+  header.clock = kClockKind;
   header.forked = begun_before ? 1 : 0;
   header.tsc_hz = StatedTicksPerSecond();
   const std::size_t id_bytes =

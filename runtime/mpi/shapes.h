@@ -13,15 +13,19 @@
 
 #define STIPPLE_EXPORT __attribute__((visibility("default")))
 
-/// MPI_name is another name of PMPI_name.
+/// MPI_name is another name of PMPI_name; the classic way has no PMPI_name of its own.
+#ifdef STIPPLE_CLASSIC_PMPI
+#define STIPPLE_ALIAS(name)
+#else
 #define STIPPLE_ALIAS(name)                                  \
   extern "C" STIPPLE_EXPORT decltype(PMPI_##name) MPI_##name \
       __attribute__((alias("PMPI"                            \
                            "_" #name)));
+#endif
 
 /// A wrapper: `before` and `after` surround the real call and may use `visit` and `returned`.
 #define STIPPLE_WRAP(name, parameters, arguments, before, after) \
-  extern "C" STIPPLE_EXPORT int PMPI_##name parameters {         \
+  extern "C" STIPPLE_EXPORT int STIPPLE_WRAPPER(name) parameters { \
     auto* const real = STIPPLE_REAL(name);                       \
     if (real == nullptr) [[unlikely]]                            \
       return MPI_ERR_OTHER;                                      \
@@ -35,13 +39,18 @@
   }                                                              \
   STIPPLE_ALIAS(name)
 
+// The classic way leaves plain calls alone: another MPI's prototypes may differ in them.
+#ifdef STIPPLE_CLASSIC_PMPI
+#define STIPPLE_SHAPE_plain(name, parameters, arguments)
+#else
 #define STIPPLE_SHAPE_plain(name, parameters, arguments) \
   STIPPLE_WRAP(name, parameters, arguments, , )
+#endif
 
 // Beginning and end: on every rank, even if this one does not record.
 
 #define STIPPLE_EDGE(name, parameters, arguments, before, after) \
-  extern "C" STIPPLE_EXPORT int PMPI_##name parameters {         \
+  extern "C" STIPPLE_EXPORT int STIPPLE_WRAPPER(name) parameters { \
     auto* const real = STIPPLE_REAL(name);                       \
     if (real == nullptr) [[unlikely]]                            \
       return MPI_ERR_OTHER;                                      \
@@ -59,7 +68,7 @@
 #define STIPPLE_SHAPE_init_thread(name, parameters, arguments) \
   STIPPLE_EDGE(name, parameters, arguments, , BeginWorld(returned, *provided))
 #define STIPPLE_SHAPE_finalize(name, parameters, arguments) \
-  STIPPLE_EDGE(name, parameters, arguments, EndWorld(), )
+  STIPPLE_EDGE(name, parameters, arguments, EndWorld(), if constexpr (kSimulated) EndSimulation())
 
 // Point to point.
 
@@ -170,9 +179,13 @@
 #define STIPPLE_SHAPE_comm_create_group(name, parameters, arguments) \
   STIPPLE_WRAP(name, parameters, arguments, ,                        \
                if (returned == MPI_SUCCESS) CommunicatorCreatedByGroup(comm, tag, *newcomm))
+#ifdef STIPPLE_CLASSIC_PMPI
+#define STIPPLE_SHAPE_comm_between(name, parameters, arguments)  // as plain ones
+#else
 #define STIPPLE_SHAPE_comm_between(name, parameters, arguments) \
   STIPPLE_WRAP(name, parameters, arguments, ,                   \
                if (returned == MPI_SUCCESS) CommunicatorCreatedBetween(*newcomm))
+#endif
 #define STIPPLE_SHAPE_comm_free(name, parameters, arguments)               \
   STIPPLE_WRAP(name, parameters, arguments, const MPI_Comm handle = *comm; \
                const Communicator known = Forget(handle),                  \
