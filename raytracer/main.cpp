@@ -16,10 +16,10 @@
 #include "raytracer/image/png_file.h"
 #include "raytracer/options.h"
 #include "raytracer/plan.h"
+#include "raytracer/render/machine.h"
 #include "raytracer/render/marks.h"
 #include "raytracer/render/picture.h"
 #include "raytracer/render/render.h"
-#include "raytracer/render/work_meter.h"
 #include "raytracer/report.h"
 #include "raytracer/scene/load.h"
 #include "raytracer/scene/nff.h"
@@ -182,6 +182,7 @@ int RunOrReport(int argc, char** argv) {
   World world;
   MPI_Comm_rank(world.comm, &world.rank);
   MPI_Comm_size(world.comm, &world.size);
+  world.has_host = MachineHasHost() && world.size > 1;
   try {
     return Run(world, argc, argv);
   } catch (const StoppedTogether& stop) {

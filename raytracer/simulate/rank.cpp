@@ -13,7 +13,7 @@
 #include <cmath>
 #include <utility>
 
-#include "raytracer/render/work_meter.h"
+#include "raytracer/render/machine.h"
 #include "raytracer/simulate/machine.h"
 
 namespace stipple::raytracer {
@@ -91,6 +91,8 @@ WorkMeter::~WorkMeter() {
   earlier_ps += PriceOf(*metered);
   metered = nullptr;
 }
+
+bool MachineHasHost() { return simulate::ThisNode().has_host; }
 
 }  // namespace stipple::raytracer
 
