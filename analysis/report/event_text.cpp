@@ -158,6 +158,10 @@ std::string TimingText(const Trace& trace, const Process& p, const EventWord* re
       return fmt::format("probe {} from {} tag {}", r.bytes,
                          WorldText(trace, p, r.communicator, r.sender), r.tag);
     }
+    case RecordKind::kTransmission: {
+      const auto r = RecordAt<Transmission>(record);
+      return fmt::format("transmission of {} bytes to {}", r.bytes, r.receiver);
+    }
     case RecordKind::kRegionMode:
       return ModeText(trace, p, RecordAt<RegionMode>(record));
     case RecordKind::kSample:

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "analysis/trace/kernel.h"
+
 namespace stipple {
 namespace {
 
@@ -25,11 +27,12 @@ StateSums::StateSums(const Analysis& analysis, const Location& main,
   for (const MpiCall& call : here) {
     const std::int64_t idle_ns =
         analysis.waits[static_cast<std::size_t>(&call - calls.data())].idle_ns;
-    Replace(call.begin_ns, call.begin_ns + idle_ns, State::kIdle);
-    Replace(call.begin_ns + idle_ns, call.end_ns, State::kMessage);
+    Replace(call.begin_ns, call.begin_ns + idle_ns, State::kUser, State::kIdle);
+    Replace(call.begin_ns + idle_ns, call.end_ns, State::kUser, State::kMessage);
   }
+  const State before = SystemIsInMpi(analysis.trace) ? State::kMessage : State::kUser;
   for (const CallSpan& span : analysis.kernel[main.index])
-    Replace(span.begin_ns, span.end_ns, State::kSystem);
+    Replace(span.begin_ns, span.end_ns, before, State::kSystem);
   for (std::size_t i = 1; i < sums_.size(); ++i)
     for (std::size_t s = 0; s < kStateCount; ++s) sums_[i][s] += sums_[i - 1][s];
 }
@@ -38,8 +41,8 @@ std::size_t StateSums::IndexOf(std::int64_t moment_ns) const {
   return static_cast<std::size_t>(std::ranges::lower_bound(moments_, moment_ns) - moments_.begin());
 }
 
-void StateSums::Replace(std::int64_t begin_ns, std::int64_t end_ns, State state) {
-  Add(begin_ns, end_ns, State::kUser, -1);
+void StateSums::Replace(std::int64_t begin_ns, std::int64_t end_ns, State before, State state) {
+  Add(begin_ns, end_ns, before, -1);
   Add(begin_ns, end_ns, state, 1);
 }
 

@@ -33,7 +33,7 @@ class StateSums {
   std::size_t IndexOf(std::int64_t moment_ns) const;
   void Add(std::int64_t begin_ns, std::int64_t end_ns, State state, std::int64_t sign);
   /// What was user time until now is time in this state.
-  void Replace(std::int64_t begin_ns, std::int64_t end_ns, State state);
+  void Replace(std::int64_t begin_ns, std::int64_t end_ns, State before, State state);
 
   std::span<const std::int64_t> moments_;
   std::vector<std::array<std::int64_t, kStateCount>> sums_;  // by moment

@@ -22,6 +22,21 @@ void EndSimulation() {
   if (simulator != nullptr) simulator->end();
 }
 
+std::uint64_t SendNs(std::uint64_t bytes) {
+  return simulator == nullptr ? 0 : simulator->send_ns(bytes);
+}
+
+std::uint64_t ReceiveNs(std::uint64_t bytes) {
+  return simulator == nullptr ? 0 : simulator->receive_ns(bytes);
+}
+
+bool NextTransmission(NetworkTime& time) {
+  stipple_transmission next{};
+  if (simulator == nullptr || simulator->next_transmission(&next) == 0) return false;
+  time = {next.begin_ns, next.end_ns, next.bytes, next.receiver};
+  return true;
+}
+
 }  // namespace stipple
 
 extern "C" {

@@ -24,6 +24,19 @@ void SettleCharges();
 /// After MPI_Finalize.
 void EndSimulation();
 
+/// What the machine's system takes to start a message, and to take one.
+std::uint64_t SendNs(std::uint64_t bytes);
+std::uint64_t ReceiveNs(std::uint64_t bytes);
+
+/// When a message of this rank was in the network.
+struct NetworkTime {
+  std::uint64_t begin_ns, end_ns;
+  std::uint64_t bytes;
+  std::int32_t receiver;  // world rank
+};
+/// The next one that has ended; false if there is none.
+bool NextTransmission(NetworkTime& time);
+
 }  // namespace stipple
 
 #endif

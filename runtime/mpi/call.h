@@ -17,6 +17,7 @@
 #include "runtime/core/flavour.h"
 #include "runtime/core/recorder.h"
 #include "runtime/core/simulator.h"
+#include "runtime/mpi/simulated.h"
 
 // mpi.h may replace the names that MPI-3 removed by macros that refuse them.
 #undef MPI_Address
@@ -125,6 +126,7 @@ class Visit {
   std::uint64_t EnterTicks() const { return enter_ticks_; }
 
   void Leave() noexcept {
+    if constexpr (kSimulated) RecordSystem(enter_ticks_);
     stipple_leave(region_);
     outermost_frame = 0;
   }

@@ -2,6 +2,7 @@
 #include "runtime/mpi/message.h"
 
 #include "runtime/mpi/handle_table.h"
+#include "runtime/mpi/simulated.h"
 #include "stipple/format.h"
 
 namespace stipple::mpi {
@@ -31,6 +32,7 @@ std::uint64_t BytesIn(const MPI_Status& status) {
 }
 
 void AppendSend(std::uint64_t ticks, const Request& send, uint32_t number) {
+  if constexpr (kSimulated) NoteSent(send.bytes);
   Append(MpiSend{.header = 0,
                  .ticks = ticks,
                  .bytes = send.bytes,
@@ -48,6 +50,7 @@ void AppendPost(std::uint64_t ticks, const Request& receive) {
 }
 
 void AppendReceive(std::uint64_t ticks, const Request& receive, const MPI_Status& status) {
+  if constexpr (kSimulated) NoteReceived(BytesIn(status));
   Append(MpiReceive{.header = 0,
                     .ticks = ticks,
                     .bytes = BytesIn(status),
