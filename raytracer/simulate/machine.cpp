@@ -28,6 +28,7 @@ struct Run {
   const MachineRow* machine = nullptr;
   int nodes = 0;
   bool host = false;
+  std::uint64_t host_overhead_ns = 0;
   Node node;  // what ranks see
   void* shared = nullptr;
 };
@@ -98,10 +99,9 @@ void ReadRun(Run& run) {
     Refuse(fmt::format("--nodes {}: {} has from 1 to {} nodes", run.nodes, run.machine->name,
                        run.machine->most_nodes));
   run.host = run.machine->always_host || !Variable("STIPPLE_HOST").empty();
+  run.host_overhead_ns = Ns(Number("STIPPLE_HOST_OVERHEAD", run.machine->host_overhead_s));
   const double scale = Number("STIPPLE_WORK_SCALE", 1);
   run.node = {.prices = Scaled(run.machine->prices, scale),
-              .send = run.machine->send,
-              .receive = run.machine->receive,
               .event_ns = Ns(Number("STIPPLE_EVENT_COST", 0)),
               .has_host = run.machine->always_host};
 }
@@ -110,13 +110,10 @@ void BuildPlatform(const Run& run) {
   s4u::NetZone* root = s4u::create_full_zone("root");
   run.machine->network(*run.machine, root, run.nodes, run.host);
   root->seal();
-  const std::uint64_t overhead = Ns(Number("STIPPLE_HOST_OVERHEAD", run.machine->host_overhead_s));
   int rank = 0;
   for (s4u::Host* host : s4u::Engine::get_instance()->get_all_hosts()) {
-    if (run.host && rank++ == run.nodes)
-      SetStartUp(host, {overhead, overhead}, {overhead, overhead});
-    else
-      SetStartUp(host, run.machine->send, run.machine->receive);
+    SetStartUp(host, SendOf(rank), ReceiveOf(rank));
+    ++rank;
   }
 }
 
@@ -127,6 +124,18 @@ std::uint64_t StartUp::Of(std::uint64_t bytes) const {
 }
 
 const Node& ThisNode() { return ThisRun().node; }
+
+StartUp SendOf(int rank) {
+  const Run& run = ThisRun();
+  if (!run.host || rank != run.nodes) return run.machine->send;
+  return {run.host_overhead_ns, run.host_overhead_ns};
+}
+
+StartUp ReceiveOf(int rank) {
+  const Run& run = ThisRun();
+  if (!run.host || rank != run.nodes) return run.machine->receive;
+  return {run.host_overhead_ns, run.host_overhead_ns};
+}
 
 std::uint64_t Now() { return Ns(simgrid_get_clock()); }
 

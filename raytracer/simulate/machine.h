@@ -30,14 +30,16 @@ struct StartUp {
   std::uint64_t Of(std::uint64_t bytes) const;
 };
 
-/// Who this rank is on the machine.
+/// What all ranks need to know of the machine.
 struct Node {
   Prices prices;
-  StartUp send, receive;
   std::uint64_t event_ns = 0;  // what recording an event costs
   bool has_host = false;       // the last rank is the host, whatever the partition
 };
 const Node& ThisNode();
+/// Of the host another than of nodes.
+StartUp SendOf(int rank);
+StartUp ReceiveOf(int rank);
 
 /// The time, without what this rank has not settled.
 std::uint64_t Now();

@@ -70,9 +70,9 @@ constexpr StartUp kIpsc860Send{45'000, 125'000}, kIpsc860Receive{45'000, 45'000}
 constexpr StartUp kModernSend{250, 250}, kModernReceive{250, 250};
 
 // docs/stipple-simulate.md says where prices come from.
-constexpr Prices kModernPrices{2'000, 12'000, 150'000, 60'000};
-constexpr Prices kIpsc2Prices{60'000'000, 160'000'000, 900'000'000, 400'000'000};
-constexpr Prices kIpsc860Prices{3'750'000, 10'000'000, 56'000'000, 25'000'000};
+constexpr Prices kModernPrices{4'150, 9'700, 90'000, 78'000};
+constexpr Prices kIpsc2Prices{66'000'000, 163'000'000, 420'000'000, 280'000'000};
+constexpr Prices kIpsc860Prices{3'000'000, 6'000'000, 19'000'000, 15'000'000};
 
 constexpr double kMegabyte = 1e6;
 

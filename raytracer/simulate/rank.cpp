@@ -63,15 +63,19 @@ void End() {
   ended = true;
 }
 
-std::uint64_t SendNs(std::uint64_t bytes) { return simulate::ThisNode().send.Of(bytes); }
-std::uint64_t ReceiveNs(std::uint64_t bytes) { return simulate::ThisNode().receive.Of(bytes); }
+/// In the world; asked for after MPI_Init.
+int Rank() {
+  static int rank = -1;
+  if (rank < 0 && !ended) PMPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  return rank;
+}
+
+std::uint64_t SendNs(std::uint64_t bytes) { return simulate::SendOf(Rank()).Of(bytes); }
+std::uint64_t ReceiveNs(std::uint64_t bytes) { return simulate::ReceiveOf(Rank()).Of(bytes); }
 
 int NextTransmission(stipple_transmission* next) {
-  static int rank = -1;
-  if (ended && rank < 0) return 0;
-  if (rank < 0) PMPI_Comm_rank(MPI_COMM_WORLD, &rank);
   simulate::Transmission taken;
-  if (!simulate::TakeTransmission(rank, taken)) return 0;
+  if (!simulate::TakeTransmission(Rank(), taken)) return 0;
   *next = {taken.begin_ns, taken.end_ns, taken.bytes, taken.receiver, 0};
   return 1;
 }

@@ -10,7 +10,7 @@ trap 'rm -rf "$work"' EXIT
 . "$(dirname "$(realpath "$0")")/../../mpi_environment.sh"
 cd "$work"
 fail() { echo "FAIL: $*"; exit 1; }
-scene="--scene teapot --scene-size 3 --resolution 64x64"
+scene="--scene teapot --scene-size 3 --resolution 64x64 --samples 1"
 
 # usage: simulate NAME MACHINE NODES [OPTIONS...] -- RAYTRACER'S OPTIONS: its JSON in NAME.json, its picture in NAME.png
 simulate() {
@@ -37,7 +37,7 @@ kill $load
 same first second
 same first third
 test "$(figure first messages)" = 144 || fail "$(figure first messages) messages: two for each of 64 bundles and of 8 nodes"
-test ${#work} -gt 0 -a "$(figure first hash | wc -c)" = 65 || fail "hash '$(figure first hash)'"
+test "$(figure first hash | wc -c)" = 65 || fail "hash '$(figure first hash)'"
 
 # Every partition and machine: one picture. The iPSC's host collects always.
 simulate tiled ipsc2 8 -- --partition tiled
