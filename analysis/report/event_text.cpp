@@ -7,9 +7,8 @@
 #include <algorithm>
 
 #include "analysis/stats/number.h"
-#include "analysis/trace/kernel.h"
-
 #include "analysis/trace/demangle.h"
+#include "analysis/trace/kernel.h"
 #include "analysis/trace/native_stack.h"
 
 namespace stipple {

@@ -67,7 +67,7 @@ struct HashVisitor {
     bytes += text;
   }
   template <class Number>
-    requires std::integral<Number>
+  requires std::integral<Number>
   void AddOne(Number number) {
     const auto word = static_cast<std::uint64_t>(number);
     for (int shift = 0; shift < 64; shift += 8)
@@ -86,9 +86,8 @@ std::string RunHashOf(const Trace& trace) {
     trace.Scan(l, visitor);
     bytes[l.index] = std::move(visitor.bytes);
   });
-  std::ranges::sort(locations, {}, [](const Location* l) {
-    return std::tuple(l->rank, l->process, l->thread);
-  });
+  std::ranges::sort(locations, {},
+                    [](const Location* l) { return std::tuple(l->rank, l->process, l->thread); });
   Sha256 hash;
   for (const Location* l : locations) hash.Add(std::as_bytes(std::span(bytes[l->index])));
   return hash.Digits();

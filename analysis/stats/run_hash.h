@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a run did and when, as one number: for runs whose time is simulated, so that it can be the same.
+// What a run did and when, as one number: for runs whose time is simulated, so that it can be the
+// same.
 #ifndef STIPPLE_ANALYSIS_STATS_RUN_HASH_H
 #define STIPPLE_ANALYSIS_STATS_RUN_HASH_H
 
@@ -9,9 +10,9 @@
 
 namespace stipple {
 
-/// SHA-256 over the messages, collectives, marks and counters of each location, with their times, in
-/// the order of ranks. Function events are no part of it: which there are depends on what the compiler
-/// has inlined. Scans the archive.
+/// SHA-256 over the messages, collectives, marks and counters of each location, with their times,
+/// in the order of ranks. Function events are no part of it: which there are depends on what the
+/// compiler has inlined. Scans the archive.
 std::string RunHashOf(const Trace& trace);
 
 }  // namespace stipple

@@ -42,15 +42,13 @@ bool MakeArchive(const std::string& path, bool overwrite) {
   std::error_code absent;
   std::error_code error;
   if (fs::exists(fs::symlink_status(path, absent))) {
-    if (!overwrite)
-      throw InputError(path, "exists; --overwrite replaces it, -o names another");
+    if (!overwrite) throw InputError(path, "exists; --overwrite replaces it, -o names another");
     if (!LooksLikeArchive(path))
       throw InputError(path, "is not an archive, so --overwrite leaves it alone");
     fs::remove_all(path, error);
   }
   if (!error) fs::create_directories(path, error);
-  if (error)
-    fmt::print(stderr, "stipple: nothing is recorded: {}: {}\n", path, error.message());
+  if (error) fmt::print(stderr, "stipple: nothing is recorded: {}: {}\n", path, error.message());
   return !error;
 }
 

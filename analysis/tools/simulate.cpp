@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // stipple simulate: the ray tracer on a simulated machine, recorded in the machine's time.
 //
-// SimGrid's smpimain runs it: lib/stipple/simulate/raytracer.so is a rank, libstipple-machine.so beside
-// it the machine, which reads from the environment what this file was asked for.
+// SimGrid's smpimain runs it: lib/stipple/simulate/raytracer.so is a rank, libstipple-machine.so
+// beside it the machine, which reads from the environment what this file was asked for.
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -39,8 +39,9 @@ struct SimulateOptions {
 
 std::optional<SimulateOptions> ParseSimulate(const Arguments& arguments) {
   SimulateOptions options;
-  CommandOptions app("Run the ray tracer on a simulated machine and record it in that machine's time.",
-                     "simulate");
+  CommandOptions app(
+      "Run the ray tracer on a simulated machine and record it in that machine's time.",
+      "simulate");
   app.Footer("-- raytracer [ARGUMENTS]    what to run, behind the options");
   app.Add({"--machine", "NAME", "ipsc2, ipsc860 or modern", true}, options.machine);
   app.Add({"--nodes", "N", "how many nodes trace; a host comes in addition", true}, options.nodes);
@@ -68,9 +69,10 @@ std::optional<SimulateOptions> ParseSimulate(const Arguments& arguments) {
 fs::path SimulatorDirectory() {
   const fs::path directory = fs::path(LibraryDirectory()) / "simulate";
   if (!fs::exists(directory / "raytracer.so"))
-    throw InputError("stipple simulate",
-                     "this stipple was built without SimGrid; install libsimgrid-dev, then configure "
-                     "and build again");
+    throw InputError(
+        "stipple simulate",
+        "this stipple was built without SimGrid; install libsimgrid-dev, then configure "
+        "and build again");
   if (!fs::exists(STIPPLE_SMPIMAIN))
     throw InputError(STIPPLE_SMPIMAIN, "is missing; install libsimgrid-dev");
   return directory;
@@ -80,7 +82,8 @@ fs::path SimulatorDirectory() {
 bool WantsHost(const Arguments& arguments) {
   for (std::size_t i = 0; i < arguments.size(); ++i)
     if (arguments[i] == "--partition=bundles" ||
-        (arguments[i] == "--partition" && i + 1 < arguments.size() && arguments[i + 1] == "bundles"))
+        (arguments[i] == "--partition" && i + 1 < arguments.size() &&
+         arguments[i + 1] == "bundles"))
       return true;
   return false;
 }
@@ -101,7 +104,8 @@ void SetEnvironment(const SimulateOptions& options) {
   set("STIPPLE_ARCHIVE", fs::absolute(options.archive));
   set("STIPPLE_CLOCK", "exact");
   set("STIPPLE_PROGRAM", "raytracer");
-  for (const char* name : {"STIPPLE_FILTER", "STIPPLE_PAUSED", "STIPPLE_MAX_BYTES", "STIPPLE_SAMPLE"})
+  for (const char* name :
+       {"STIPPLE_FILTER", "STIPPLE_PAUSED", "STIPPLE_MAX_BYTES", "STIPPLE_SAMPLE"})
     set(name, "");
 }
 

@@ -7,8 +7,8 @@
 
 namespace stipple::raytracer {
 
-/// As long as it lives these counts, as they grow, are this rank's work, and a simulated machine takes
-/// its time for them. One at a time.
+/// As long as it lives these counts, as they grow, are this rank's work, and a simulated machine
+/// takes its time for them. One at a time.
 class WorkMeter {
  public:
   explicit WorkMeter(const RayCounts& counts);

@@ -103,7 +103,8 @@ Rendered RenderShares(const World& world, Sampler& sampler, RayPartition partiti
   const int assembling = world.has_host ? world.size - 1 : 0;
   std::vector<RayResult> results;
   if (world.rank < world.Nodes())
-    results = TraceShare(world, sampler, round.Of(partition(choice, world.rank, world.Nodes())), round);
+    results =
+        TraceShare(world, sampler, round.Of(partition(choice, world.rank, world.Nodes())), round);
   if (world.rank == assembling) {
     rendered.raster = AssembleShares(world, partition, choice, round, results);
   } else {

@@ -6,7 +6,8 @@ namespace stipple::raytracer {
 
 template <class Real>
 std::unique_ptr<Kernel<Real>> MakeEmbreeKernel(const Model<Real>&) {
-  throw UsageError("--kernel embree: counts no tests, by which a simulated machine charges for work");
+  throw UsageError(
+      "--kernel embree: counts no tests, by which a simulated machine charges for work");
 }
 
 template std::unique_ptr<Kernel<float>> MakeEmbreeKernel(const Model<float>&);

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 #include <simgrid/engine.h>
-#include <simgrid/s4u.hpp>
 #include <smpi/smpi.h>
 
 #include <charconv>
@@ -12,6 +11,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <simgrid/s4u.hpp>
 #include <string>
 
 #include "raytracer/simulate/machines.h"

@@ -16,7 +16,7 @@ namespace stipple::simulate {
 struct Prices {
   std::uint64_t box_test_ps = 0;
   std::uint64_t primitive_test_ps = 0;
-  std::uint64_t ray_ps = 0;         // of an eye, reflected or refracted ray: its hit and its shading
+  std::uint64_t ray_ps = 0;  // of an eye, reflected or refracted ray: its hit and its shading
   std::uint64_t shadow_ray_ps = 0;  // and of a light that it meets
 };
 

@@ -23,13 +23,14 @@ s4u::Host* MakeHost(s4u::NetZone* zone, unsigned long rank) {
 
 /// Puts hosts into the places of a zone; places from `ranks` on stay empty.
 s4u::ClusterCallbacks Places(int ranks) {
-  return s4u::ClusterCallbacks([ranks](s4u::NetZone* zone, const std::vector<unsigned long>&,
-                                       unsigned long place) {
-    simgrid::kernel::routing::NetPoint* point =
-        place < static_cast<unsigned long>(ranks) ? MakeHost(zone, place)->get_netpoint()
-                                                  : zone->create_router("empty-" + std::to_string(place));
-    return std::pair{point, static_cast<simgrid::kernel::routing::NetPoint*>(nullptr)};
-  });
+  return s4u::ClusterCallbacks(
+      [ranks](s4u::NetZone* zone, const std::vector<unsigned long>&, unsigned long place) {
+        simgrid::kernel::routing::NetPoint* point =
+            place < static_cast<unsigned long>(ranks)
+                ? MakeHost(zone, place)->get_netpoint()
+                : zone->create_router("empty-" + std::to_string(place));
+        return std::pair{point, static_cast<simgrid::kernel::routing::NetPoint*>(nullptr)};
+      });
 }
 
 /// A torus of two nodes in each dimension: its dimension-order routes are those of e-cube. Each
@@ -62,9 +63,8 @@ void FatTree(const MachineRow& machine, s4u::NetZone* root, int nodes, bool host
 }
 
 // Start-up on the iPSC: the exemplar gives about 270 us, nearly all of it software, split evenly; a
-// message of more than 100 bytes waits for a buffer first. Short and long ones took 350 and 660 us on
-// another machine of the kind (Bomans and Roose, Concurrency 1(1), 1989), so a long one is taken to
-// cost 1.89 times as much; the difference is the sender's.
+// message of more than 100 bytes waits for a buffer first and is taken to cost 1.89 times as much;
+// the difference is the sender's. docs/stipple-simulate.md gives the reasons.
 constexpr StartUp kIpsc2Send{135'000, 375'000}, kIpsc2Receive{135'000, 135'000};
 constexpr StartUp kIpsc860Send{45'000, 125'000}, kIpsc860Receive{45'000, 45'000};
 constexpr StartUp kModernSend{250, 250}, kModernReceive{250, 250};
@@ -79,8 +79,9 @@ constexpr double kMegabyte = 1e6;
 constexpr std::array kMachines{
     MachineRow{"ipsc2", "Intel iPSC/2: hypercube of 16 MHz 386/387 nodes, and a host", 128, true,
                kIpsc2Prices, kIpsc2Send, kIpsc2Receive, 1e-3, 2.8 * kMegabyte, 1e-6, Hypercube},
-    MachineRow{"ipsc860", "Intel iPSC/860: the same network, 40 MHz i860 nodes, and a host", 128, true,
-               kIpsc860Prices, kIpsc860Send, kIpsc860Receive, 1e-3, 2.8 * kMegabyte, 1e-6, Hypercube},
+    MachineRow{"ipsc860", "Intel iPSC/860: the same network, 40 MHz i860 nodes, and a host", 128,
+               true, kIpsc860Prices, kIpsc860Send, kIpsc860Receive, 1e-3, 2.8 * kMegabyte, 1e-6,
+               Hypercube},
     MachineRow{"modern", "cluster of today: fat tree, 12.5 GB/s a link", 1024, false, kModernPrices,
                kModernSend, kModernReceive, 250e-9, 12.5e3 * kMegabyte, 100e-9, FatTree}};
 

@@ -22,11 +22,12 @@ struct MachineRow {
   std::string_view name;
   std::string_view what;
   int most_nodes;
-  bool always_host;  // a host beside the nodes in every run, else only where the partition wants one
+  bool
+      always_host;  // a host beside the nodes in every run, else only where the partition wants one
   Prices prices;
   StartUp send, receive;
-  double host_overhead_s;    // of a message at the host; --host-overhead
-  double bytes_per_second;   // of a link, in each direction
+  double host_overhead_s;   // of a message at the host; --host-overhead
+  double bytes_per_second;  // of a link, in each direction
   double hop_s;
   Network network;
 };

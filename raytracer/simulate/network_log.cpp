@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 // SimGrid 3.32 tells of network actions by a type that it does not publish: NetworkAction. It is an
-// Action, which is published, with references to the two hosts behind it. That is taken as given for
-// this version alone, and what is found there must be hosts of the machine.
+// Action, which is published, with references to the two hosts behind it. That is taken as given
+// for this version alone, and what is found there must be hosts of the machine.
 #include "raytracer/simulate/network_log.h"
 
 #include <fmt/format.h>
-#include <simgrid/kernel/resource/Action.hpp>
-#include <simgrid/s4u.hpp>
 #include <simgrid/version.h>
 
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <simgrid/kernel/resource/Action.hpp>
+#include <simgrid/s4u.hpp>
 
 namespace stipple::simulate {
 namespace {
@@ -47,7 +47,8 @@ NetworkLog& NetworkLog::Instance() {
 
 void NetworkLog::Begin() {
   int rank = 0;
-  for (const s4u::Host* host : s4u::Engine::get_instance()->get_all_hosts()) rank_of_[host] = rank++;
+  for (const s4u::Host* host : s4u::Engine::get_instance()->get_all_hosts())
+    rank_of_[host] = rank++;
   ended_.resize(rank_of_.size());
   s4u::Link::on_communication_state_change_cb(OnChange);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The archive's clock: on real machines the time-stamp counter and what relates it to nanoseconds, in
-// a simulation the simulator's.
+// The archive's clock: on real machines the time-stamp counter and what relates it to nanoseconds,
+// in a simulation the simulator's.
 #ifndef STIPPLE_RUNTIME_CORE_CLOCK_H
 #define STIPPLE_RUNTIME_CORE_CLOCK_H
 

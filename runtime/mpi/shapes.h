@@ -24,19 +24,19 @@
 #endif
 
 /// A wrapper: `before` and `after` surround the real call and may use `visit` and `returned`.
-#define STIPPLE_WRAP(name, parameters, arguments, before, after) \
+#define STIPPLE_WRAP(name, parameters, arguments, before, after)   \
   extern "C" STIPPLE_EXPORT int STIPPLE_WRAPPER(name) parameters { \
-    auto* const real = STIPPLE_REAL(name);                       \
-    if (real == nullptr) [[unlikely]]                            \
-      return MPI_ERR_OTHER;                                      \
-    Visit visit(CallIndex::k##name);                             \
-    if (!visit.Recorded()) return real arguments;                \
-    before;                                                      \
-    const int returned = real arguments;                         \
-    after;                                                       \
-    visit.Leave();                                               \
-    return returned;                                             \
-  }                                                              \
+    auto* const real = STIPPLE_REAL(name);                         \
+    if (real == nullptr) [[unlikely]]                              \
+      return MPI_ERR_OTHER;                                        \
+    Visit visit(CallIndex::k##name);                               \
+    if (!visit.Recorded()) return real arguments;                  \
+    before;                                                        \
+    const int returned = real arguments;                           \
+    after;                                                         \
+    visit.Leave();                                                 \
+    return returned;                                               \
+  }                                                                \
   STIPPLE_ALIAS(name)
 
 // The classic way leaves plain calls alone: another MPI's prototypes may differ in them.
@@ -49,18 +49,18 @@
 
 // Beginning and end: on every rank, even if this one does not record.
 
-#define STIPPLE_EDGE(name, parameters, arguments, before, after) \
+#define STIPPLE_EDGE(name, parameters, arguments, before, after)   \
   extern "C" STIPPLE_EXPORT int STIPPLE_WRAPPER(name) parameters { \
-    auto* const real = STIPPLE_REAL(name);                       \
-    if (real == nullptr) [[unlikely]]                            \
-      return MPI_ERR_OTHER;                                      \
-    Visit visit(CallIndex::k##name);                             \
-    before;                                                      \
-    const int returned = real arguments;                         \
-    after;                                                       \
-    if (visit.Recorded()) visit.Leave();                         \
-    return returned;                                             \
-  }                                                              \
+    auto* const real = STIPPLE_REAL(name);                         \
+    if (real == nullptr) [[unlikely]]                              \
+      return MPI_ERR_OTHER;                                        \
+    Visit visit(CallIndex::k##name);                               \
+    before;                                                        \
+    const int returned = real arguments;                           \
+    after;                                                         \
+    if (visit.Recorded()) visit.Leave();                           \
+    return returned;                                               \
+  }                                                                \
   STIPPLE_ALIAS(name)
 
 #define STIPPLE_SHAPE_init(name, parameters, arguments) \

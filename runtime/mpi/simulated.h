@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a simulator knows of the machine's system and network and no real machine tells: records beside
-// the messages. Only in the simulated flavour.
+// What a simulator knows of the machine's system and network and no real machine tells: records
+// beside the messages. Only in the simulated flavour.
 //
 // Within a call of MPI the system first starts what is sent, then the rank waits, then the system
 // takes what has come.

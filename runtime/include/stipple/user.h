@@ -186,21 +186,22 @@ STIPPLE_INLINE void stipple_start_regions(const char* pattern) {
  * one was there. */
 struct stipple_transmission {
   uint64_t begin_ns, end_ns;
-  uint64_t bytes; /* with what the network adds */
+  uint64_t bytes;   /* with what the network adds */
   int32_t receiver; /* world rank */
   int32_t reserved;
 };
 
 /* What the simulator tells the runtime of this rank. */
 struct stipple_simulator {
-  uint64_t (*now_ns)(void);        /* the time, all that was charged included; never goes back */
-  void (*charge)(uint64_t ns);     /* this rank works for so long */
-  void (*settle)(void);            /* all that was charged passes, for all the machine to see */
-  void (*end)(void);               /* after MPI_Finalize: from now on the time stands */
+  uint64_t (*now_ns)(void);    /* the time, all that was charged included; never goes back */
+  void (*charge)(uint64_t ns); /* this rank works for so long */
+  void (*settle)(void);        /* all that was charged passes, for all the machine to see */
+  void (*end)(void);           /* after MPI_Finalize: from now on the time stands */
   uint64_t (*send_ns)(uint64_t bytes);    /* what the system takes to start a message */
   uint64_t (*receive_ns)(uint64_t bytes); /* and to take one */
-  int (*next_transmission)(struct stipple_transmission*); /* 0: no further one of this rank has ended */
-  uint64_t event_ns;               /* what recording an event costs on the simulated machine */
+  int (*next_transmission)(
+      struct stipple_transmission*); /* 0: no further one of this rank has ended */
+  uint64_t event_ns;                 /* what recording an event costs on the simulated machine */
 };
 
 /* Before the first event; `simulator` stays. */

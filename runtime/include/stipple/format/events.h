@@ -137,8 +137,8 @@ struct MpiProbe {
 };
 static_assert(sizeof(MpiProbe) == 40);
 
-/// A message was in the network, as the simulator of the machine says (flavour sim): one of this rank's,
-/// in the order of their ends. `ticks` is when it was told.
+/// A message was in the network, as the simulator of the machine says (flavour sim): one of this
+/// rank's, in the order of their ends. `ticks` is when it was told.
 struct Transmission {
   static constexpr RecordKind kKind = RecordKind::kTransmission;
   EventWord header;
