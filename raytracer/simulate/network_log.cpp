@@ -5,13 +5,14 @@
 #include "raytracer/simulate/network_log.h"
 
 #include <fmt/format.h>
-#include <simgrid/version.h>
 
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <simgrid/kernel/resource/Action.hpp>
 #include <simgrid/s4u.hpp>
+// Needs what others define first.
+#include <simgrid/version.h>
 
 namespace stipple::simulate {
 namespace {
