@@ -19,6 +19,11 @@ struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A scene that does not fit into memory: there may be another way than giving up.
+struct NoRoom : UsageError {
+  using UsageError::UsageError;
+};
+
 }  // namespace stipple::raytracer
 
 #endif

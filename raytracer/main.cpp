@@ -15,7 +15,10 @@
 #include "raytracer/image/exr_file.h"
 #include "raytracer/image/png_file.h"
 #include "raytracer/options.h"
+#include "raytracer/partition/scene_parts.h"
 #include "raytracer/plan.h"
+#include "raytracer/render/coupled.h"
+#include "raytracer/render/divided.h"
 #include "raytracer/render/machine.h"
 #include "raytracer/render/marks.h"
 #include "raytracer/render/picture.h"
@@ -52,17 +55,20 @@ SceneChoice ChoiceOf(const Options& options) {
           options.patches};
 }
 
+PartitionChoice PointsOf(ImageSize image, const Options& options) {
+  return {RasterOf(image, options.samples), options.tile,
+          static_cast<std::uint32_t>(options.bundle), options.select,
+          static_cast<std::uint64_t>(options.seed)};
+}
+
 template <class Real>
 Rendered RenderScene(const World& world, const Scene& scene, const Model<Real>& model,
                      const Kernel<Real>& kernel, int depth, const Options& options) {
   const ImageSize image = scene.view.resolution;
-  const PartitionChoice choice{RasterOf(image, options.samples), options.tile,
-                               static_cast<std::uint32_t>(options.bundle), options.select,
-                               static_cast<std::uint64_t>(options.seed)};
   const ShadingChoice shading{depth, options.min_contribution};
   const auto sampler = MakeSampler(scene, model, kernel, shading, image, options.samples);
   const WorkMeter meter(sampler->counts());
-  return Render(world, *sampler, options.partition, choice, options.samples);
+  return Render(world, *sampler, options.partition, PointsOf(image, options), options.samples);
 }
 
 void WriteText(const std::string& text, const std::string& path) {
@@ -72,12 +78,20 @@ void WriteText(const std::string& text, const std::string& path) {
   if (!file) throw InputError(path, 0, fmt::format("cannot be written: {}", std::strerror(errno)));
 }
 
-void WritePictures(const Raster& raster, ImageSize image, const Options& options) {
-  Mark(Moment::kOutputBegins);
-  if (options.output.ends_with(".exr"))
-    WriteExr(LinearPictureOf(raster, image, options.samples), options.output);
-  else if (!options.output.empty())
-    WritePng(PictureOf(raster, image, options.samples), options.output);
+/// What the picture lacks at most, be it written or not.
+LossBound WritePicture(const Raster& raster, ImageSize image, const Options& options) {
+  if (options.output.empty()) return LossOf(raster, image, options.samples);
+  if (options.output.ends_with(".exr")) {
+    const auto [picture, loss] = LinearPictureOf(raster, image, options.samples);
+    WriteExr(picture, options.output);
+    return loss;
+  }
+  const auto [picture, loss] = PictureOf(raster, image, options.samples);
+  WritePng(picture, options.output);
+  return loss;
+}
+
+void WriteCostMap(const Raster& raster, ImageSize image, const Options& options) {
   if (options.cost_map.ends_with(".png"))
     WritePng(CostImageOf(raster, image, options.samples), options.cost_map);
   else if (!options.cost_map.empty())
@@ -102,10 +116,7 @@ void OnRank(const World& world, int rank, Work work) {
 }
 
 /// What is decided for this scene; rank 0 says why if it is asked to.
-template <class Real>
-SceneFacts Adapt(const World& world, const Scene& scene, Model<Real>& model,
-                 const Options& options) {
-  const SceneFacts facts = FactsOf(scene, model);
+void Adapt(const World& world, const SceneFacts& facts, const Options& options) {
   OnAllRanks(world, [&] {
     RequireDigits(facts, options);
     return true;
@@ -113,11 +124,25 @@ SceneFacts Adapt(const World& world, const Scene& scene, Model<Real>& model,
   OnRank(world, 0, [&] {
     if (options.explain) fmt::print("{}", Explanation(facts, options));
   });
-  return facts;
+}
+
+/// What is left when the picture is there.
+void Finish(const World& world, const Raster& raster, ImageSize image, RunReport run,
+            RankReport report, const std::string& kept_in, const Options& options) {
+  OnRank(world, AssemblingRank(world, options.partition), [&] {
+    Mark(Moment::kOutputBegins);
+    report.loss = WritePicture(raster, image, options);
+    WriteCostMap(raster, image, options);
+  });
+  run.ranks = GatherReports(world, report);
+  OnRank(world, 0, [&] {
+    WriteReport(run, options);
+    if (!kept_in.empty()) fmt::print("  scene from {}\n", kept_in);
+  });
 }
 
 template <class Real>
-void RenderAndReport(const World& world, const Options& options) {
+void RenderReplicated(const World& world, const Options& options) {
   SharedScene<Real> shared =
       SceneForAll<Real>(world, ChoiceOf(options), HierarchyFor(options.kernel));
   Scene& scene = shared.scene;
@@ -127,7 +152,8 @@ void RenderAndReport(const World& world, const Options& options) {
   report.build_cpu_s = shared.build_cpu_s;
   Stopwatch watch;
   const auto kernel = OnAllRanks(world, [&] { return MakeKernel(options.kernel, shared.model); });
-  const SceneFacts facts = Adapt(world, scene, shared.model, options);
+  const SceneFacts facts = FactsOf(scene, shared.model);
+  Adapt(world, facts, options);
   report.build_s += watch.Lap();
   report.build_cpu_s += watch.LapCpu();
   const Rendered rendered =
@@ -137,16 +163,76 @@ void RenderAndReport(const World& world, const Options& options) {
   report.render_cpu_s = watch.LapCpu();
   report.counts = rendered.counts;
   report.messages = rendered.messages;
-  OnRank(world, AssemblingRank(world, options.partition), [&] {
-    const ImageSize image = scene.view.resolution;
-    report.loss = LossOf(rendered.raster, image, options.samples);
-    WritePictures(rendered.raster, image, options);
-  });
-  const RunReport run{shared.model.objects.size(), facts.model_bytes, GatherReports(world, report)};
-  OnRank(world, 0, [&] {
-    WriteReport(run, options);
-    if (!shared.kept_in.empty()) fmt::print("  scene from {}\n", shared.kept_in);
-  });
+  Finish(world, rendered.raster, scene.view.resolution,
+         {shared.model.objects.size(), facts.model_bytes, 0, 0, 0, {}}, report, shared.kept_in,
+         options);
+}
+
+/// What a rank may hold of a coupled scene.
+template <class Real>
+std::uint64_t BytesFor(const World& world, const SceneParts<Real>& parts, const Options& options) {
+  const std::uint64_t allowed = AllowedBytes(world, ChoiceOf(options));
+  if (options.replicate == 0) return allowed;
+  const double whole = static_cast<double>(WholeBytes(parts));
+  return std::min(allowed, static_cast<std::uint64_t>(options.replicate * whole));
+}
+
+/// Objects divided among all ranks, but for the host. `fill`: as much on each as fits.
+template <class Real>
+void RenderPartitioned(const World& world, bool fill, const Options& options) {
+  const bool host = AssemblingRank(world, options.partition) != 0;
+  const bool coupled = options.objects == "coupled";
+  const Division division{world.size - (host ? 1 : 0), options.replicate, fill, coupled};
+  SceneParts<Real> parts = PartsForAll<Real>(world, ChoiceOf(options), options.kernel, division);
+  RankReport report;
+  report.load_s = parts.load_s;
+  report.build_s = parts.build_s;
+  report.build_cpu_s = parts.build_cpu_s;
+  SceneFacts facts = FactsOf(world, parts);
+  Adapt(world, facts, options);
+  const ImageSize image = parts.scene.view.resolution;
+  const ShadingChoice shading{DepthFor(facts, static_cast<int>(options.max_depth)),
+                              options.min_contribution};
+  double predicted = 0;
+  if (coupled) {
+    predicted = Couple(world, shading, options.kernel, BytesFor(world, parts, options), parts);
+    facts = FactsOf(world, parts);
+  }
+  const auto tracer = world.rank < division.holders
+                          ? MakeRankTracer(parts, world.rank, shading, image, options.samples)
+                          : nullptr;
+  Stopwatch watch;
+  const DividedChoice choice{options.partition,
+                             PointsOf(image, options),
+                             division.holders,
+                             static_cast<std::size_t>(options.package),
+                             coupled && host
+                                 ? HomesOf(parts, PointsOf(image, options), image, options.samples)
+                                 : std::vector<std::uint32_t>(),
+                             &parts.holding};
+  std::optional<WorkMeter> meter;
+  if (tracer) meter.emplace(tracer->counts());
+  const DividedRender divided = RenderDivided(world, tracer.get(), choice);
+  report.render_s = watch.Lap();
+  report.render_cpu_s = watch.LapCpu();
+  report.counts = divided.rendered.counts;
+  report.messages = divided.rendered.messages;
+  report.travel = divided.travel;
+  Finish(world, divided.rendered.raster, image,
+         {facts.Objects(), facts.model_bytes, facts.parts, facts.copies, predicted, {}}, report, "",
+         options);
+}
+
+template <class Real>
+void RenderAndReport(const World& world, const Options& options) {
+  if (IsDivided(options)) return RenderPartitioned<Real>(world, false, options);
+  try {
+    RenderReplicated<Real>(world, options);
+  } catch (const StoppedTogether& stop) {
+    if (!stop.no_room || options.objects != "auto" || options.samples.adaptive || world.size == 1)
+      throw;
+    RenderPartitioned<Real>(world, true, options);
+  }
 }
 
 void WriteScene(const Options& options) {
@@ -156,6 +242,12 @@ void WriteScene(const Options& options) {
 }
 
 void LoadAndRender(const World& world, const Options& options) {
+  OnAllRanks(world, [&] {
+    if (world.has_host && options.partition == "guided")
+      throw UsageError(
+          "--partition guided: this machine has a host, which hands out work: bundles");
+    return true;
+  });
   if (options.output.ends_with(".exr")) OnRank(world, 0, [&] { NeedExr(options.output); });
   if (!options.write_scene.empty())
     OnRank(world, 0, [&] { WriteScene(options); });

@@ -188,6 +188,11 @@ Options ParseOptions(int argc, const char* const* argv) {
   options.samples.tolerance = options.tolerance;
   if (options.kernel == "embree" && !options.cost_map.empty())
     throw UsageError("--cost-map with --kernel embree: Embree does not count its tests");
+  if (IsDivided(options) && options.samples.adaptive)
+    throw UsageError(
+        fmt::format("--samples adaptive with --objects {}: what a single ray found is in parts "
+                    "there; --samples N takes as many for each pixel",
+                    options.objects));
   return options;
 }
 

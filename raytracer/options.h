@@ -27,6 +27,9 @@ struct Options {
   std::int64_t bundle = 512;
   std::string select = "contiguous";
   std::int64_t seed = 1;
+  std::string objects = "auto";
+  double replicate = 0;
+  std::int64_t package = 64;
   Samples samples;
   double tolerance = Samples{}.tolerance;
   std::int64_t max_depth = 5;
@@ -70,15 +73,22 @@ inline constexpr OptionSpec kOptions[] = {
     {"camera", &Options::camera, "default|side|above|FILE",
      "the scene's own view, teapot from the side, rings from above, or the view of an NFF file"},
     {"resolution", &Options::resolution, "WxH", "image size in pixels (the scene's)", 1, 16384},
-    {"partition", &Options::partition, "tiled|scattered|bundles",
-     "who traces which ray: one tile per rank, row i by rank i mod P, or bundles that a host (the "
-     "last rank) hands out"},
+    {"partition", &Options::partition, "tiled|scattered|bundles|guided",
+     "who traces which ray: one tile per rank, row i by rank i mod P, bundles that a host (the "
+     "last rank) hands out, or bundles that ranks take themselves, the dearest first"},
     {"tile", &Options::tile, "rows|columns|blocks", "shape of the tiles of --partition tiled"},
     {"bundle", &Options::bundle, "PIXELS", "size of the bundles of --partition bundles", 1,
      kMostPoints},
     {"select", &Options::select, "contiguous|modulo|random",
      "which pixels make a bundle: neighbours, every B-th of B bundles, or a random choice"},
     {"seed", &Options::seed, "N", "of the random choice", 0, 9e15},
+    {"objects", &Options::objects, "auto|replicated|partitioned|coupled",
+     "a copy of all objects on each node, objects divided among the ranks so that rays travel to "
+     "them, divided but for those that a pilot finds dear, or a copy where it fits"},
+    {"replicate", &Options::replicate, "F",
+     "share of a divided scene that each rank holds (0: one part; coupled: what fits)", 0, 1},
+    {"package", &Options::package, "RAYS", "of a divided scene: rays in a message, at most", 1,
+     65536},
     {"samples", &Options::samples, "corners|N|adaptive",
      "rays per pixel: its four corners, shared with its neighbours, N inside, or from 8 to 256 as "
      "the pixel needs",
@@ -114,6 +124,11 @@ inline constexpr OptionSpec kOptions[] = {
 
 /// Errors: UsageError, naming the option or value and what is known.
 Options ParseOptions(int argc, const char* const* argv);
+
+/// Is the scene to be divided whatever its size?
+inline bool IsDivided(const Options& options) {
+  return options.objects == "partitioned" || options.objects == "coupled";
+}
 
 /// The text of --help.
 std::string HelpText();

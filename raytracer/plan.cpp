@@ -173,6 +173,12 @@ Decision RayGroups(const SceneFacts&, const Options&) {
 
 Decision Memory(const SceneFacts& facts, const Options&) {
   const auto bytes = static_cast<double>(facts.model_bytes);
+  if (facts.parts > 0)
+    return {
+        fmt::format("{} of {} parts each", facts.parts_held, facts.parts),
+        fmt::format("{:.1f} MB at most on a rank; with the copies of objects that lie in several "
+                    "parts {} objects: rays travel to theirs",
+                    bytes * 1e-6, facts.copies)};
   return {"a copy per node",
           fmt::format("{:.1f} MB, {:.0f} bytes an object: no ray has to travel to its objects",
                       bytes * 1e-6, bytes / std::max(1.0, static_cast<double>(facts.Objects())))};
@@ -207,6 +213,18 @@ std::uint64_t SceneFacts::Objects() const {
   return std::accumulate(count.begin(), count.end(), std::uint64_t{0});
 }
 
+namespace {
+
+/// What does not lie in the objects.
+void TakeMaterials(const Scene& scene, SceneFacts& facts) {
+  facts.patches = scene.patches;
+  for (const Material& material : scene.materials)
+    facts.mirrors |= material.specular > 0 || material.transmission > 0;
+  facts.rules = RulesOf(scene);
+}
+
+}  // namespace
+
 template <class Real>
 SceneFacts FactsOf(const Scene& scene, Model<Real>& model) {
   SceneFacts facts;
@@ -217,17 +235,37 @@ SceneFacts FactsOf(const Scene& scene, Model<Real>& model) {
   }
   model.ForEachArray(
       [&](const auto& array) { facts.model_bytes += array.size() * sizeof(array[0]); });
-  facts.patches = scene.patches;
-  for (const Material& material : scene.materials) {
-    facts.mirrors |= material.specular > 0 || material.transmission > 0;
-  }
-  facts.rules = RulesOf(scene);
+  TakeMaterials(scene, facts);
   return facts;
 }
 
 template SceneFacts FactsOf(const Scene&, Model<float>&);
 template SceneFacts FactsOf(const Scene&, Model<double>&);
 template SceneFacts FactsOf(const Scene&, Model<long double>&);
+
+template <class Real>
+SceneFacts FactsOf(const World& world, SceneParts<Real>& parts) {
+  SceneFacts facts;
+  for (const auto& leaf : parts.held) {
+    if (!leaf) continue;
+    const SceneFacts more = FactsOf(parts.scene, leaf->model);
+    facts.reach = std::max(facts.reach, more.reach);
+    facts.smallest = std::min(facts.smallest, more.smallest);
+  }
+  facts.model_bytes = parts.model_bytes;
+  MPI_Allreduce(MPI_IN_PLACE, &facts.reach, 1, MPI_DOUBLE, MPI_MAX, world.comm);
+  MPI_Allreduce(MPI_IN_PLACE, &facts.smallest, 1, MPI_DOUBLE, MPI_MIN, world.comm);
+  MPI_Allreduce(MPI_IN_PLACE, &facts.model_bytes, 1, MPI_UINT64_T, MPI_MAX, world.comm);
+  TakeMaterials(parts.scene, facts);
+  facts.count = parts.count;
+  facts.parts = static_cast<int>(parts.tree.leaves());
+  facts.parts_held = static_cast<int>(parts.holding.LeavesOf(0).size());
+  facts.copies = parts.copies;
+  return facts;
+}
+
+template SceneFacts FactsOf(const World&, SceneParts<float>&);
+template SceneFacts FactsOf(const World&, SceneParts<double>&);
 
 double FloatError(const SceneFacts& facts) { return facts.reach / facts.smallest * 0x1p-24 * 32; }
 

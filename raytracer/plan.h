@@ -14,6 +14,7 @@
 
 #include "raytracer/geometry/model.h"
 #include "raytracer/options.h"
+#include "raytracer/partition/scene_parts.h"
 #include "raytracer/render/shading.h"
 #include "raytracer/scene/scene.h"
 
@@ -23,7 +24,9 @@ namespace stipple::raytracer {
 struct SceneFacts {
   std::array<std::uint64_t, 5> count{};  // of objects, by ShapeKind
   PatchChoice patches;                   // what was made of Bezier patches
-  std::uint64_t model_bytes = 0;         // of the shapes and their hierarchy
+  std::uint64_t model_bytes = 0;  // of the shapes and their hierarchy, on the rank that has most
+  int parts = 0, parts_held = 0;  // of a divided scene: leaves, and how many a rank holds
+  std::uint64_t copies = 0;       // objects in all leaves together
 
   /// Largest number that a ray's arithmetic meets: a coordinate of an object or of the eye, or the
   /// distance between the two.
@@ -42,6 +45,10 @@ struct SceneFacts {
 /// One pass over the objects. The model is only read.
 template <class Real>
 SceneFacts FactsOf(const Scene& scene, Model<Real>& model);
+
+/// The same of a divided scene; every rank calls it.
+template <class Real>
+SceneFacts FactsOf(const World& world, SceneParts<Real>& parts);
 
 /// The error of float arithmetic, in smallest features: rays start 32 roundings off a surface.
 double FloatError(const SceneFacts& facts);

@@ -88,6 +88,35 @@ std::string CountLines(const RunReport& report, std::uint64_t rays) {
       static_cast<double>(report.model_bytes) * 1e-6, messages);
 }
 
+/// Rays that travelled, over all ranks; of `most_held` the largest.
+TravelCounts TravelOf(const RunReport& report) {
+  TravelCounts sum;
+  for (const RankReport& rank : report.ranks) {
+    sum.rays_sent += rank.travel.rays_sent;
+    sum.packages_sent += rank.travel.packages_sent;
+    sum.most_held = std::max(sum.most_held, rank.travel.most_held);
+  }
+  return sum;
+}
+
+double RaysPerPackage(const TravelCounts& travel) {
+  return static_cast<double>(travel.rays_sent) /
+         static_cast<double>(std::max<std::uint64_t>(travel.packages_sent, 1));
+}
+
+std::string TravelLine(const RunReport& report, std::uint64_t rays) {
+  if (report.parts == 0) return "";
+  const TravelCounts travel = TravelOf(report);
+  return fmt::format(
+      "  objects in {} parts, {} with their copies; {:.2f} journeys per ray, {:.1f} rays per "
+      "package, at "
+      "most "
+      "{} rays on a rank\n",
+      report.parts, report.copies,
+      static_cast<double>(travel.rays_sent) / static_cast<double>(std::max<std::uint64_t>(rays, 1)),
+      RaysPerPackage(travel), travel.most_held);
+}
+
 }  // namespace
 
 std::vector<RankReport> GatherReports(const World& world, const RankReport& report) {
@@ -103,6 +132,16 @@ std::string StatsJson(const RunReport& report) {
   json["ranks"] = report.ranks.size();
   for (const CountRow& row : kCounts) json[std::string(row.key)] = Sum(report, row.value);
   for (const TimeRow& row : kTimes) json[std::string(row.key)] = Slowest(report, row.seconds);
+  if (report.parts > 0) {
+    const TravelCounts travel = TravelOf(report);
+    json["parts"] = report.parts;
+    json["copies"] = report.copies;
+    json["rays_sent"] = travel.rays_sent;
+    json["packages_sent"] = travel.packages_sent;
+    json["rays_per_package"] = RaysPerPackage(travel);
+    json["most_rays_held"] = travel.most_held;
+    if (report.predicted_balance > 0) json["predicted_balance"] = report.predicted_balance;
+  }
   const LossBound loss = LossIn(report);
   json["lost_mean"] = loss.mean;
   json["lost_worst"] = loss.worst;
@@ -123,6 +162,7 @@ std::string Summary(const RunReport& report) {
       report.objects, seconds, report.ranks.size(), report.ranks.size() == 1 ? "rank" : "ranks",
       seconds > 0 ? static_cast<double>(rays) / seconds * 1e-6 : 0.0);
   text += CountLines(report, rays);
+  text += TravelLine(report, rays);
   const LossBound loss = LossIn(report);
   text += loss.worst > 0
               ? fmt::format(
@@ -130,9 +170,13 @@ std::string Summary(const RunReport& report) {
                     "on average, {:.2g} at the worst pixel\n",
                     loss.mean, loss.worst)
               : "  every ray was followed to its end\n";
-  if (tracing > 1 && work > 0)
-    text += fmt::format("  work of the busiest tracing rank over the mean: {:.2f}\n",
+  if (tracing > 1 && work > 0) {
+    text += fmt::format("  work of the busiest tracing rank over the mean: {:.2f}",
                         static_cast<double>(most) * tracing / work);
+    if (report.predicted_balance > 0)
+      text += fmt::format("; {:.2f} was foretold by the pilot", report.predicted_balance);
+    text += "\n";
+  }
   return text;
 }
 

@@ -11,7 +11,9 @@
 #include "analysis/report/html_panel.h"
 #include "analysis/report/html_table.h"
 #include "analysis/stats/number.h"
+#include "analysis/trace/demangle.h"
 #include "analysis/views/layout.h"
+#include "analysis/views/quantity.h"
 #include "analysis/views/state_runs.h"
 #include "analysis/views/svg_write.h"
 #include "analysis/views/table_access.h"
@@ -21,27 +23,21 @@ namespace stipple {
 namespace {
 
 constexpr std::size_t kMostDials = 32;  // more nodes have no room for one each
-constexpr std::size_t kMostTableRows = 24;
+constexpr std::size_t kMostTableRows = 12;
 
-/// Rows time_s, rank, window, since_start: of each row that the timeline draws, as the table
-/// `utilisation` has them by rank.
+/// Rows time_s, rank, utilisation: what contours are drawn from.
 Table UtilisationByRow(const ViewInput& views, std::size_t steps) {
-  Table table{
-      "utilisation", TableShape::kRows, {{"time_s"}, {"rank"}, {"window"}, {"since_start"}}, {}};
+  Table table{"utilisation", TableShape::kRows, {{"time_s"}, {"rank"}, {"utilisation"}}, {}};
   const Timeline& timeline = *views.timeline;
   const double length = timeline.end_s - timeline.begin_s;
   std::vector<std::vector<StateShares>> columns;
   for (const TimelineRow& row : timeline.rows)
     columns.push_back(AverageColumns(std::span(&row, 1), steps));
-  std::vector<double> sums(columns.size());
   for (std::size_t i = 0; i < steps; ++i)
-    for (std::size_t r = 0; r < columns.size(); ++r) {
-      sums[r] += static_cast<double>(columns[r][i][0]);
+    for (std::size_t r = 0; r < columns.size(); ++r)
       table.rows.push_back(stipple::RowOf(
           timeline.begin_s + length * static_cast<double>(i) / static_cast<double>(steps),
-          std::int64_t{timeline.rows[r].rank}, static_cast<double>(columns[r][i][0]),
-          sums[r] / static_cast<double>(i + 1)));
-    }
+          std::int64_t{timeline.rows[r].rank}, static_cast<double>(columns[r][i][0])));
   return table;
 }
 
@@ -56,7 +52,9 @@ Table UtilisationOfRun(const ViewInput& views) {
 }
 
 /// Any small table as it is.
-std::string PlainTable(const Table& table, const std::string& caption, std::string_view noun) {
+std::string PlainTable(const Table& table, const std::string& caption, const Timeline& timeline) {
+  const std::string noun(NounFor(timeline));
+  const std::int64_t host = HostOf(timeline);
   std::string text = fmt::format(
       "<div class=\"scroll\"><table class=\"plain\"><caption "
       "class=\"unseen\">{}</caption><thead><tr>",
@@ -68,7 +66,9 @@ std::string PlainTable(const Table& table, const std::string& caption, std::stri
     const bool is_text = !table.rows.empty() && std::holds_alternative<std::string>(
                                                     CellOf(table, table.rows.front(), column.name));
     text += fmt::format("<th scope=\"col\"{}>{}</th>", is_text ? "" : " class=\"n\"",
-                        EscapeMarkup(name == "rank" ? std::string(noun) : name));
+                        EscapeMarkup(name == "rank"           ? noun
+                                     : name == "busiest rank" ? "busiest " + noun
+                                                              : name));
   }
   text += "</tr></thead><tbody>\n";
   for (std::size_t r = 0; r < std::min(table.rows.size(), kMostTableRows); ++r) {
@@ -76,18 +76,25 @@ std::string PlainTable(const Table& table, const std::string& caption, std::stri
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
       const Cell& cell = table.rows[r][c];
       const std::string& name = table.columns[c].name;
-      const bool share = name == "share" || name.ends_with("_share") ||
-                         name.ends_with("efficiency") || name == "load_balance";
+      const bool share = QuantityOf(name) == Quantity::kShare;
       if (const auto* words = std::get_if<std::string>(&cell))
-        text += fmt::format("<td>{}</td>", EscapeMarkup(ShortenMiddle(*words, 80)));
+        text += fmt::format("<td title=\"{}\">{}</td>", EscapeMarkup(ShortenMiddle(*words, 600)),
+                            EscapeMarkup(ShortenMiddle(ShortName(*words), 60)));
       else if (std::holds_alternative<std::monostate>(cell))
         text += "<td class=\"n\">\u2013</td>";
+      else if (name == "begin_s" && table.columns.size() > c + 1 &&
+               table.columns[c + 1].name == "end_s")
+        text += fmt::format(
+            "<td class=\"n\"><a href=\"#timeline\" data-from=\"{:.9g}\" "
+            "data-to=\"{:.9g}\">{}</a></td>",
+            CellNumber(cell), CellNumber(table.rows[r][c + 1]), FormatSeconds(CellNumber(cell)));
       else if (name.ends_with("_s") || name == "seconds")
         text += fmt::format("<td class=\"n\">{}</td>", FormatSeconds(CellNumber(cell)));
       else if (share)
         text += fmt::format("<td class=\"n\">{}</td>", FormatPercent(CellNumber(cell)));
       else if (const auto* whole = std::get_if<std::int64_t>(&cell))
-        text += fmt::format("<td class=\"n\">{}</td>", FormatCount(*whole));
+        text += fmt::format("<td class=\"n\">{}</td>",
+                            name == "rank" && *whole == host ? "host" : FormatCount(*whole));
       else
         text += fmt::format("<td class=\"n\">{}</td>", FormatThreeDigits(CellNumber(cell)));
     }
@@ -102,12 +109,13 @@ std::string PlainTable(const Table& table, const std::string& caption, std::stri
 }
 
 std::string TableSection(const Table& table, const std::string& heading, std::string_view id,
-                         const std::string& sentence, std::string_view noun) {
+                         const std::string& sentence, const Timeline& timeline,
+                         const std::string& style = "half") {
   if (table.rows.empty()) return {};
   std::string lead;
   if (!sentence.empty()) lead = "<p>" + EscapeMarkup(sentence) + "</p>";
-  return PanelAround({.heading = heading, .style = "half", .id = id},
-                     lead + PlainTable(table, heading, noun));
+  return PanelAround({.heading = heading, .style = style, .id = id},
+                     lead + PlainTable(table, heading, timeline));
 }
 
 /// Efficiencies as bars: parts of one, each the factor of what stands above it.
@@ -152,21 +160,23 @@ bool HasTime(const ViewInput& views) {
 std::string NodesPage(const ReportInput& input, const ViewInput& views) {
   if (!HasTime(views) || input.timeline.rows.size() < 2) return {};
   const Table utilisation = UtilisationOfRun(views);
-  std::string instruments;
+  std::string text;
   if (input.timeline.rows.size() <= kMostDials)
-    instruments +=
-        TablePanel(views, {utilisation}, DialsView, "Utilisation, whole run", "dials", "half");
-  instruments += TablePanel(views, {utilisation}, KiviatView, "Balance, whole run", "kiviat", "");
-  std::string text = PanelRow(instruments, "halves");
-  text += input.switches.rows.empty()
+    text += TablePanel(views, {utilisation}, DialsView, "Utilisation, whole run", "dials", "main");
+  std::string both =
+      TablePanel(views, {utilisation}, KiviatView, "Balance, whole run", "kiviat", "half");
+  if (const std::string states =
+          StatesTable(input.states, NounFor(input.timeline), HostOf(input.timeline));
+      !states.empty())
+    both += PanelAround({.heading = "Time in each state", .style = "half", .id = "states"}, states);
+  text += PanelRow(both, "halves");
+  return text +
+         (input.switches.rows.empty()
               ? PanelWithout({.heading = "Context switches", .id = "switches"},
                              "Not recorded: stipple run --switches records when threads left "
                              "their processors.")
-              : TablePanel(views, {input.switches}, StripView, "Context switches", "switches", "");
-  int host = -1;
-  for (const TimelineRow& row : input.timeline.rows)
-    if (row.is_host) host = row.rank;
-  return text + StatesDetails(input.states, NounFor(input.timeline), host);
+              : TablePanel(views, {input.switches}, StripView, "Context switches", "switches",
+                           "main"));
 }
 
 std::string TimePage(const ReportInput& input, const ViewInput& views) {
@@ -177,11 +187,13 @@ std::string TimePage(const ReportInput& input, const ViewInput& views) {
     text += TablePanel(views, {UtilisationByRow(views, 96)}, ContourView,
                        fmt::format("Utilisation by {} and time", noun), "contour", "main");
   return text +
-         PanelRow(
-             EfficiencyPanel(input) + TableSection(input.critical_path, "Critical path",
-                                                   "critical-path", input.critical_path_text, noun),
-             "halves") +
-         TableSection(input.phases, "Phases", "phases", input.phases_text, noun);
+         TablePanel(views, {input.phases}, PhaseBarsView, "Whole run, by phase", "phase-bars",
+                    "main") +
+         TableSection(input.phases, "Phases", "phases", input.phases_text, input.timeline, "main") +
+         PanelRow(EfficiencyPanel(input) + TableSection(input.critical_path, "Critical path",
+                                                        "critical-path", input.critical_path_text,
+                                                        input.timeline),
+                  "halves");
 }
 
 }  // namespace stipple

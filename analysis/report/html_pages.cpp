@@ -20,8 +20,6 @@ namespace {
 
 /// Matrices of more ranks stand on one page only.
 constexpr std::size_t kMostTwice = 33;
-/// A mean of many ranks' cells would be wrong: not every cell counts the same.
-constexpr std::size_t kMostMeans = 130;
 
 constexpr PageEntry kPages[] = {{"summary", "Summary", SummaryPage},
                                 {"nodes", "Nodes", NodesPage},
@@ -40,13 +38,6 @@ std::string Legend(bool hints) {
     text += fmt::format("<li><i class=\"s{}\"></i>{}{}</li>", s, kStateNames[s],
                         hints ? kStateHints[s] : "");
   return text + "</ul>";
-}
-
-/// World rank of the host; -1: none.
-int HostOf(const Timeline& timeline) {
-  for (const TimelineRow& row : timeline.rows)
-    if (row.is_host) return row.rank;
-  return -1;
 }
 
 /// Timeline and bars, row by row side by side; below, curves on the timeline's axis.
@@ -86,24 +77,24 @@ Scene Named(Scene scene, std::string_view name) {
   return scene;
 }
 
-std::string MatrixPanel(const Table& table, const std::string& heading, std::string_view id,
-                        const MatrixWords& words, bool sums) {
-  if (table.rows.size() < 2 || (!sums && table.rows.size() > kMostMeans)) return {};
-  const GroupedMatrix grouped = sums ? Grouped(table) : GroupedMatrix{table};
-  return PanelText({.heading = heading, .style = "quarter", .end_note = true, .note = grouped.note},
-                   Named(MatrixPanelView(grouped.table, words), id));
+std::string MatrixPanel(const GroupedMatrix& matrix, const std::string& heading,
+                        std::string_view id, const MatrixWords& words) {
+  if (matrix.table.rows.size() < 2) return {};
+  return PanelText({.heading = heading, .style = "quarter", .end_note = true, .note = matrix.note},
+                   Named(MatrixPanelView(matrix.table, words), id));
 }
 
 }  // namespace
 
 std::string TablePanel(const ViewInput& views, const std::vector<Table>& tables, View view,
-                       const std::string& heading, std::string_view id, const std::string& style) {
+                       const std::string& heading, std::string_view id, const std::string& style,
+                       const std::string& below) {
   ViewInput input = views;
   for (const Table& table : tables) {
     if (table.rows.empty()) return {};
     input.tables.push_back(&table);
   }
-  return PanelText({.heading = heading, .style = style}, Named(view(input), id));
+  return PanelText({.heading = heading, .style = style, .below = below}, Named(view(input), id));
 }
 
 std::span<const PageEntry> Pages() { return kPages; }
@@ -122,10 +113,12 @@ std::string SummaryPage(const ReportInput& input, const ViewInput& views) {
                        VolumeMatrixView(views));
   }
   // With several nodes the numbers stand on their page.
-  return Overview(input, views) + PanelRow(lower, "lower") +
-         (input.timeline.rows.size() > 1
-              ? ""
-              : StatesDetails(input.states, NounFor(input.timeline), HostOf(input.timeline)));
+  std::string numbers;
+  if (input.timeline.rows.size() <= 1)
+    numbers = StatesTable(input.states, NounFor(input.timeline), HostOf(input.timeline));
+  if (!numbers.empty())
+    numbers = "<details><summary>States as numbers</summary>" + numbers + "</details>\n";
+  return Overview(input, views) + PanelRow(lower, "lower") + numbers;
 }
 
 std::string CommunicationPage(const ReportInput& input, const ViewInput& views) {
@@ -149,10 +142,10 @@ std::string CommunicationPage(const ReportInput& input, const ViewInput& views) 
   if (panels.empty())
     panels = PanelWithout({.heading = "Messages", .id = "messages"},
                           "No messages were sent between ranks.");
-  panels += MatrixPanel(input.mean_size, "Mean size", "matrix-mean", {.title = "Bytes per message"},
-                        false) +
-            MatrixPanel(input.wait_matrix, "Waiting", "matrix-wait",
-                        {.title = "Time waited", .rows = "waiter", .columns = "waited for"}, true);
+  panels += MatrixPanel(GroupedMean(input.mean_size, input.volume, input.messages), "Mean size",
+                        "matrix-mean", {.title = "Bytes per message"}) +
+            MatrixPanel(Grouped(input.wait_matrix), "Waiting", "matrix-wait",
+                        {.title = "Time waited", .rows = "waiter", .columns = "waited for"});
   const std::string_view noun = NounFor(input.timeline);
   const int host = HostOf(input.timeline);
   return PanelRow(panels, "quarters") +
@@ -165,8 +158,12 @@ std::string CommunicationPage(const ReportInput& input, const ViewInput& views) 
 }
 
 std::string FunctionsPage(const ReportInput& input, const ViewInput& views) {
-  return ProfileSection(input.profile, input.spreads, input.timeline.rows) +
-         TablePanel(views, {input.callpaths}, FlameView, "Call paths", "callpaths", "paths");
+  const std::string left_out =
+      input.callpaths_note.empty()
+          ? ""
+          : "<p class=\"more\">" + EscapeMarkup(input.callpaths_note) + "</p>\n";
+  return ProfileSection(input) + TablePanel(views, {input.callpaths}, FlameView, "Call paths",
+                                            "callpaths", "paths", left_out);
 }
 
 std::string QualityPage(const ReportInput& input, const ViewInput&) {

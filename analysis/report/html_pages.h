@@ -24,9 +24,10 @@ struct PageEntry {
 
 std::span<const PageEntry> Pages();
 
-/// A view of tables as a panel; empty where one of them has no rows.
+/// A view of tables as a panel, with markup below it; empty where one of them has no rows.
 std::string TablePanel(const ViewInput& views, const std::vector<Table>& tables, View view,
-                       const std::string& heading, std::string_view id, const std::string& style);
+                       const std::string& heading, std::string_view id, const std::string& style,
+                       const std::string& below = {});
 
 ViewInput ViewsOf(const ReportInput& input);
 

@@ -7,6 +7,21 @@
 #include "analysis/views/svg_write.h"
 
 namespace stipple {
+namespace {
+
+/// What colours mean, drawn as pictures are, so that they follow the page's colours.
+std::string KeyText(const std::vector<KeyEntry>& key) {
+  std::string text = "<ul class=\"legend\">";
+  for (const KeyEntry& entry : key)
+    text += fmt::format(
+        "<li><svg class=\"swatch\" viewBox=\"0 0 12 12\" aria-hidden=\"true\"><g class=\"cells\">"
+        "<path fill=\"#{:02x}{:02x}{:02x}\" d=\"M0 {}h12v{}h-12z\"/></g></svg>{}</li>",
+        entry.colour.red, entry.colour.green, entry.colour.blue, entry.line ? 4.5 : 0,
+        entry.line ? 3 : 12, EscapeMarkup(entry.label));
+  return text + "</ul>";
+}
+
+}  // namespace
 
 std::string PanelAround(const Panel& panel, const std::string& content) {
   std::string text = fmt::format(
@@ -25,6 +40,7 @@ std::string PanelText(const Panel& panel, const Scene& scene) {
   Panel named = panel;
   if (named.id.empty()) named.id = scene.name;
   if (named.note.empty()) named.note = scene.note;
+  if (named.beside.empty() && scene.key.size() > 1) named.beside = KeyText(scene.key);
   return PanelAround(named, "<figure>" + DrawSvg(scene) + "</figure>");
 }
 

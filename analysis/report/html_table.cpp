@@ -191,8 +191,9 @@ std::string RankText(const Cell& cell, std::string_view noun, int host = -1) {
 
 }  // namespace
 
-std::string ProfileSection(const Table& profile, const std::vector<FunctionSpread>& spreads,
-                           const std::vector<TimelineRow>& ranks) {
+std::string ProfileSection(const ReportInput& input) {
+  const Table& profile = input.profile;
+  const std::vector<TimelineRow>& ranks = input.timeline.rows;
   if (profile.rows.empty()) return {};
   const std::vector<const Row*> rows = SortedBy(profile, "exclusive_s");
   ProfileScale scale;
@@ -204,8 +205,9 @@ std::string ProfileSection(const Table& profile, const std::vector<FunctionSprea
       "<section class=\"panel profile\" id=\"profile\" aria-labelledby=\"h-profile\"><header "
       "class=\"panel\"><h3 id=\"h-profile\">Functions</h3><span class=\"note\">whole run, summed "
       "over all ranks \u00b7 exclusive: without the functions called</span></header>\n<div "
-      "class=\"scroll\"><table class=\"sortable\"><caption class=\"unseen\">Time by "
-      "function</caption><thead><tr><th scope=\"col\" data-sort=\"text\">function</th><th "
+      "class=\"scroll\"><table class=\"sortable\" id=\"functions-table\"><caption "
+      "class=\"unseen\">Time by function</caption><thead><tr><th scope=\"col\" "
+      "data-sort=\"text\">function</th><th "
       "scope=\"col\" data-sort=\"text\">file</th>{}{}{}<th scope=\"col\">inclusive, "
       "exclusive</th>",
       NumberHead("calls"), NumberHead("inclusive"), NumberHead("exclusive", true));
@@ -215,9 +217,13 @@ std::string ProfileSection(const Table& profile, const std::vector<FunctionSprea
   text += "</tr></thead><tbody>\n";
   for (std::size_t i = 0; i < std::min(rows.size(), kMostFunctions); ++i) {
     const std::string region = CellText(CellOf(profile, *rows[i], "region"));
-    const auto spread = std::ranges::find(spreads, region, &FunctionSpread::region);
-    text += "<tr>" + ProfileRow(profile, *rows[i], scale) +
-            SpreadCells(spread == spreads.end() ? nullptr : &*spread, ranks) + "</tr>\n";
+    const auto spread = std::ranges::find(input.spreads, region, &FunctionSpread::region);
+    const auto& series = input.function_series.functions;
+    const auto followed = std::ranges::find(series, region, &FunctionSeries::Function::region);
+    text += followed == series.end() ? "<tr>"
+                                     : fmt::format("<tr data-f=\"{}\">", followed - series.begin());
+    text += ProfileRow(profile, *rows[i], scale) +
+            SpreadCells(spread == input.spreads.end() ? nullptr : &*spread, ranks) + "</tr>\n";
   }
   text += "</tbody></table></div>\n";
   if (rows.size() > kMostFunctions) {
@@ -298,14 +304,13 @@ std::string WaitsSection(const Table& waits, int culprit, std::string_view noun,
   return text + "</section>\n";
 }
 
-std::string StatesDetails(const Table& states, std::string_view noun, int host) {
+std::string StatesTable(const Table& states, std::string_view noun, int host) {
   if (states.rows.empty() || states.rows.size() > kMostNumbers) return {};
   constexpr std::pair<std::string_view, std::string_view> kColumns[] = {
       {"user_s", "user"}, {"system_s", "system"}, {"message_s", "message"}, {"idle_s", "idle"}};
   std::string text = fmt::format(
-      "<details><summary>States as numbers</summary><div class=\"scroll\"><table "
-      "id=\"states-table\"><thead><tr><th "
-      "scope=\"col\">{}</th>",
+      "<div class=\"scroll\"><table id=\"states-table\"><caption class=\"unseen\">Time in each "
+      "state</caption><thead><tr><th scope=\"col\">{}</th>",
       noun);
   for (const auto& [name, title] : kColumns)
     text += fmt::format("<th scope=\"col\" class=\"n\">{}</th>", title);
@@ -315,7 +320,7 @@ std::string StatesDetails(const Table& states, std::string_view noun, int host) 
     for (const auto& [name, title] : kColumns) text += TimeCell(CellOf(states, row, name));
     text += "</tr>\n";
   }
-  return text + "</tbody></table></div></details>\n";
+  return text + "</tbody></table></div>\n";
 }
 
 std::string MatrixDetails(const Table& matrix, bool bytes) {

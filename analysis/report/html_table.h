@@ -14,8 +14,7 @@ namespace stipple {
 
 /// Functions by exclusive time: the first 30, and how many more there are; how unevenly the ranks
 /// spent it. Empty without rows.
-std::string ProfileSection(const Table& profile, const std::vector<FunctionSpread>& spreads,
-                           const std::vector<TimelineRow>& ranks);
+std::string ProfileSection(const ReportInput& input);
 
 /// Single calls, each with a link to its moment.
 std::string SingleWaitsSection(const std::vector<SingleWait>& waits, const Timeline& timeline,
@@ -24,8 +23,8 @@ std::string SingleWaitsSection(const std::vector<SingleWait>& waits, const Timel
 /// Ten sums of waits; `culprit` is the world rank in the headline.
 std::string WaitsSection(const Table& waits, int culprit, std::string_view noun, int host);
 
-/// States per rank as numbers, folded; empty for very many ranks.
-std::string StatesDetails(const Table& states, std::string_view noun, int host);
+/// States per rank as numbers; empty for very many ranks.
+std::string StatesTable(const Table& states, std::string_view noun, int host);
 
 /// A matrix as numbers, folded; empty for very many ranks.
 std::string MatrixDetails(const Table& matrix, bool bytes);

@@ -3,7 +3,6 @@
 #ifndef STIPPLE_ANALYSIS_REPORT_MATRIX_GROUPS_H
 #define STIPPLE_ANALYSIS_REPORT_MATRIX_GROUPS_H
 
-#include <cstddef>
 #include <string>
 
 #include "analysis/stats/table.h"
@@ -15,8 +14,10 @@ struct GroupedMatrix {
   std::string note{};  // "cell: 16 × 16 ranks"; empty: as it was
 };
 
-/// At most `side` rows and columns; the host stays alone. Values are sums.
-GroupedMatrix Grouped(const Table& matrix, std::size_t side = 65);
+/// At most kMostMatrixCells rows and columns; the host stays alone. Values are sums.
+GroupedMatrix Grouped(const Table& matrix);
+/// The same of a matrix of means: of all sums of the ranks that share a cell over all their counts.
+GroupedMatrix GroupedMean(const Table& mean, const Table& sums, const Table& counts);
 
 }  // namespace stipple
 

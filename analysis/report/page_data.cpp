@@ -7,7 +7,8 @@
 #include <cmath>
 #include <vector>
 
-#include "analysis/stats/number.h"
+#include "analysis/report/page_code.h"
+#include "analysis/report/page_series.h"
 #include "analysis/views/layout.h"
 #include "analysis/views/state_runs.h"
 #include "analysis/views/text.h"
@@ -18,27 +19,6 @@ namespace {
 constexpr std::size_t kMostStateBytes = 350'000;
 constexpr std::size_t kLeastBins = 32;
 constexpr std::size_t kMostMarks = 300;
-constexpr double kTolerance = 2;  // units of one column
-
-using Bytes = std::vector<std::uint8_t>;
-
-std::span<const std::uint8_t> BytesOf(std::string_view text) {
-  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
-}
-
-/// Whole numbers, seven bits a byte, the lowest first.
-void AddNumber(Bytes& bytes, std::uint64_t number) {
-  for (; number >= 128; number >>= 7)
-    bytes.push_back(static_cast<std::uint8_t>(number & 127) | std::uint8_t{128});
-  bytes.push_back(static_cast<std::uint8_t>(number));
-}
-
-template <class Numbers>
-std::string NumbersText(const Numbers& numbers) {
-  Bytes bytes;
-  for (const auto number : numbers) AddNumber(bytes, static_cast<std::uint64_t>(number));
-  return '"' + Base64(bytes) + '"';
-}
 
 /// The three states but idle of the ranks of one drawn row.
 std::string StatesText(std::span<const TimelineRow> ranks, std::size_t bins) {
@@ -47,8 +27,7 @@ std::string StatesText(std::span<const TimelineRow> ranks, std::size_t bins) {
   for (std::size_t s = 0; s < 3; ++s) {
     std::vector<double> shares;
     for (const StateShares& column : columns) shares.push_back(static_cast<double>(column[s]));
-    text += fmt::format("{}\"{}\"", s == 0 ? "" : ",",
-                        Base64(BytesOf(PackBits(BytesOf(ByteShares(shares))))));
+    text += (s == 0 ? "" : ",") + SharesText(shares);
   }
   return text + "]";
 }
@@ -139,18 +118,16 @@ std::string MessagesText(const MessageSeries& messages, const Timeline& timeline
             NumbersText(messages.bytes);
   if (!messages.all.empty()) {
     constexpr double kSteps = 1 << 30;
-    Bytes bytes;
+    std::vector<std::uint64_t> numbers;
     std::uint64_t last = 0;
     for (const MessageSeries::Dot& dot : messages.all) {
       const double place = (dot.time_s - timeline.begin_s) / (timeline.end_s - timeline.begin_s);
       const auto step = static_cast<std::uint64_t>(std::clamp(place, 0.0, 1.0) * kSteps);
-      AddNumber(bytes, step - std::min(last, step));
-      AddNumber(bytes, dot.sender_row);
-      AddNumber(bytes, dot.receiver_row);
-      AddNumber(bytes, dot.bytes);
+      numbers.insert(numbers.end(), {step - std::min(last, step), std::uint64_t{dot.sender_row},
+                                     std::uint64_t{dot.receiver_row}, dot.bytes});
       last = std::max(last, step);
     }
-    text += R"(,"all":")" + Base64(bytes) + '"';
+    text += R"(,"all":)" + NumbersText(numbers);
   }
   return text + "}";
 }
@@ -170,74 +147,6 @@ std::string WaitsText(const std::vector<WaitSeries>& waits) {
 
 }  // namespace
 
-std::string Base64(std::span<const std::uint8_t> bytes) {
-  constexpr std::string_view kLetters =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t word = 0;
-    for (std::size_t k = 0; k < 3; ++k) word = word << 8 | (k < count ? bytes[i + k] : 0U);
-    for (std::size_t k = 0; k < 4; ++k)
-      text += k <= count ? kLetters[word >> (18 - 6 * k) & 63U] : '=';
-  }
-  return text;
-}
-
-std::string PackBits(std::span<const std::uint8_t> bytes) {
-  std::string packed;
-  std::size_t literal = 0;  // where its count stands; npos: none is open
-  literal = std::string::npos;
-  for (std::size_t i = 0; i < bytes.size();) {
-    std::size_t run = 1;
-    while (i + run < bytes.size() && run < 130 && bytes[i + run] == bytes[i]) ++run;
-    if (run >= 3) {
-      packed += static_cast<char>(static_cast<std::uint8_t>(258 - run));
-      packed += static_cast<char>(bytes[i]);
-      literal = std::string::npos;
-      i += run;
-      continue;
-    }
-    if (literal == std::string::npos || static_cast<std::uint8_t>(packed[literal]) == 127) {
-      literal = packed.size();
-      packed += static_cast<char>(-1);
-    }
-    packed[literal] = static_cast<char>(packed[literal] + 1);
-    packed += static_cast<char>(bytes[i++]);
-  }
-  return packed;
-}
-
-std::string ByteShares(std::span<const double> shares) {
-  std::string bytes;
-  double truth = 0, told = 0, last = 0;
-  for (const double share : shares) {
-    truth += std::clamp(share, 0.0, 1.0) * 255;
-    // What stood before stands on while that is near enough: runs pack well. Nothing and all are
-    // never told of what is not.
-    const bool near = std::abs(truth - told - last) <= kTolerance &&
-                      std::abs(share * 255 - last) <= kTolerance && (share > 0 || last == 0);
-    if (!near) last = std::clamp(std::round(truth - told), 0.0, 255.0);
-    told += last;
-    bytes += static_cast<char>(static_cast<std::uint8_t>(last));
-  }
-  return bytes;
-}
-
-std::string JsonText(std::string_view text) {
-  std::string escaped;
-  for (const char letter : CleanUtf8(text)) {
-    if (letter == '<')
-      escaped += "\\u003c";
-    else if (letter == '"' || letter == '\\')
-      escaped.append({'\\', letter});
-    else
-      escaped += letter;
-  }
-  return escaped;
-}
-
 std::string PageData(const ReportInput& input, const ViewInput& views, std::size_t budget) {
   if (!HasRows(views.timeline) || !(input.timeline.end_s > input.timeline.begin_s)) return "{}";
   const RowGrid grid = MainGrid(views);
@@ -252,7 +161,9 @@ std::string PageData(const ReportInput& input, const ViewInput& views, std::size
       input.finding.culprit, names, RowOfRank(timeline, grid));
   data += MarksText(timeline) + "," + MessagesText(input.message_series, timeline) + "," +
           WaitsText(input.wait_series) + ",";
-  const std::size_t rest = budget > data.size() ? budget - data.size() : 0;
+  std::size_t rest = budget > data.size() ? budget - data.size() : 0;
+  data += SeriesData(input, rest - std::min(rest, kMostStateBytes / 2));
+  rest = budget > data.size() ? budget - data.size() : 0;
   return data + States(timeline, grid, std::min(kMostStateBytes, rest)) + "}";
 }
 

@@ -8,8 +8,9 @@
 #include <utility>
 
 #include "analysis/report/left_out.h"
-#include "analysis/report/series.h"
+#include "analysis/report/range_series.h"
 #include "analysis/report/text.h"
+#include "analysis/stats/callpaths.h"
 #include "analysis/stats/finding_of.h"
 #include "analysis/stats/message_load.h"
 #include "analysis/stats/message_matrix.h"
@@ -29,7 +30,7 @@ namespace {
 constexpr std::size_t kDetailParts = 12;
 constexpr int kMostNarrowings = 8;
 constexpr std::size_t kMostWaits = 10;
-constexpr std::size_t kMostSpreads = 40;
+constexpr std::size_t kMostSpreads = 30;
 
 std::string RanksText(const Trace& trace) {
   const auto count = static_cast<std::uint64_t>(trace.RankCount());
@@ -102,16 +103,17 @@ RunAccuracy AccuracyOf(const Analysis& analysis) {
 /// Matrices of very many ranks are no more than the page can draw.
 constexpr int kMostMatrixRanks = 4096;
 
-void AddCommunication(const Analysis& analysis, const std::vector<Blame>& blames,
-                      ReportInput& input) {
+void AddCommunication(const Analysis& analysis, ReportInput& input) {
   const Selection all;
+  const std::vector<BlamePiece> pieces = AllBlamePiecesOf(analysis);
   input.message_series = MessageSeriesOf(analysis);
-  input.wait_series = WaitSeriesOf(analysis, input.finding);
+  input.wait_series = WaitSeriesOf(analysis, input.finding, pieces);
+  input.pair_series = PairSeriesOf(analysis, pieces);
   if (analysis.trace.RankCount() > kMostMatrixRanks) return;
   input.messages = MessagesTable(analysis, all);
   input.volume = VolumeTable(analysis, all);
   input.mean_size = MeanSizeTable(analysis, all);
-  input.wait_matrix = WaitMatrixOf(analysis.trace, blames);
+  input.wait_matrix = WaitMatrix(analysis, all);
   input.sizes = SizesTable(analysis, all, {});
   input.types = TypesTable(analysis, all, {});
 }
@@ -125,12 +127,15 @@ std::string AddTable(const Analysis& analysis, std::string_view name, Table& tab
   return std::move(answer.headline);
 }
 
-/// Paths of a run of more events are left to `stipple stats`: they need a scan of their own.
-constexpr std::uint64_t kMostEventsForPaths = 200'000'000;
+/// How functions' times go over the run needs a scan of its own, which a longer run is not worth.
+constexpr std::uint64_t kMostEventsForColumns = 200'000'000;
 
 void AddTime(const Analysis& analysis, ReportInput& input) {
-  if (analysis.trace.EventCount() <= kMostEventsForPaths)
-    AddTable(analysis, "callpaths", input.callpaths);
+  const CallPaths paths = CallPathsOf(analysis, {});
+  input.callpaths = CallPathsTable(paths);
+  input.callpaths_note = FoldedText(paths);
+  if (analysis.trace.EventCount() <= kMostEventsForColumns)
+    input.function_series = FunctionSeriesOf(analysis, kMostSpreads);
   if (analysis.trace.RankCount() < 2) return;
   input.efficiency_text = AddTable(analysis, "efficiency", input.efficiency);
   input.phases_text = AddTable(analysis, "phases", input.phases);
@@ -155,7 +160,7 @@ ReportInput ReportInputOf(const Analysis& analysis, std::size_t columns) {
   input.waits = WaitsTable(trace, blames);
   input.longest_waits = LongestWaits(analysis, kMostWaits);
   input.spreads = SpreadsOf(analysis, kMostSpreads);
-  AddCommunication(analysis, blames, input);
+  AddCommunication(analysis, input);
   input.switches = SwitchesOverTimeTable(trace, all, {});
   AddTime(analysis, input);
   input.accuracy = AccuracyOf(analysis);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "analysis/stats/finding.h"
+#include "analysis/stats/region_columns.h"
 #include "analysis/stats/table.h"
 #include "analysis/stats/timeline.h"
 
@@ -50,6 +51,29 @@ struct MessageSeries {
   std::uint64_t count = 0;
   std::vector<Dot> all;                      // by time; empty: too many
   std::vector<std::uint64_t> counts, bytes;  // sent, by equal columns of the run
+};
+
+/// Functions over time: those with most exclusive time, by equal columns of the run.
+struct FunctionSeries {
+  struct Function {
+    std::string region;
+    /// The budget left events out: times and calls are spread as those that were recorded.
+    bool estimated = false;
+    RegionColumns columns{};  // by rank: by row of the timeline; none: too many
+  };
+  std::vector<Function> functions;      // most first
+  std::vector<std::uint64_t> all_ns{};  // exclusive time of all functions
+};
+
+/// Messages and waits from rank to rank, by equal columns of the run; what is nothing is left out.
+struct PairSeries {
+  struct Part {
+    std::uint32_t column = 0, row = 0, to = 0;  // cells of the matrices (CellsOf)
+    std::uint64_t count = 0, bytes = 0;
+    std::uint64_t wait_ns = 0;  // that `row` waited for `to`
+  };
+  std::size_t columns = 0;
+  std::vector<Part> parts;  // by column, row, to
 };
 
 /// Time that others waited for one rank, by equal columns of the run.
@@ -93,12 +117,15 @@ struct ReportInput {
   Table wait_matrix;                      // matrix of seconds that the row waited for the column
   Table switches;                         // over time by rank; no rows: none were recorded
   Table callpaths;                        // a tree
+  std::string callpaths_note;             // about calls that are not in it; empty: all are
   Table efficiency;                       // one object of fractions
   Table phases;
   Table critical_path;
   std::string efficiency_text, phases_text, critical_path_text;  // a sentence about each
   MessageSeries message_series;
   std::vector<WaitSeries> wait_series;  // most first
+  FunctionSeries function_series;
+  PairSeries pair_series;
   RunAccuracy accuracy;
   std::vector<std::string> health;  // one line per problem; empty: the archive is sound
   bool mono = false;                // patterns instead of colours

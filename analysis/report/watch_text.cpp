@@ -12,7 +12,8 @@
 #include "analysis/stats/finding_of.h"
 #include "analysis/stats/number.h"
 #include "analysis/stats/profile.h"
-#include "analysis/stats/state_sums.h"
+#include "analysis/stats/states.h"
+#include "analysis/stats/time_sums.h"
 #include "analysis/trace/demangle.h"
 #include "analysis/views/palette.h"
 
@@ -68,15 +69,15 @@ class Painter {
   std::string text_;
 };
 
-using StateTimes = std::array<std::int64_t, kStateCount>;
+using TimeByState = std::array<std::int64_t, kStateCount>;
 
 /// One line: a rank, or neighbours together.
 struct Row {
   std::string label;
   std::vector<int> ranks;
-  std::vector<StateTimes> columns;  // of the timeline
-  StateTimes last{};
-  StateTimes whole{};
+  std::vector<TimeByState> columns;  // of the timeline
+  TimeByState last{};
+  TimeByState whole{};
 };
 
 /// The moments that a line asks for.
@@ -84,7 +85,6 @@ struct Moments {
   std::vector<std::int64_t> columns;  // begin of the first, ends of all
   std::int64_t last_ns = 0;           // begin of the last window
   std::int64_t end_ns = 0;
-  std::vector<std::int64_t> all;  // ascending, each once
 };
 
 Moments MomentsOf(const WatchReading& reading, std::size_t columns) {
@@ -95,16 +95,12 @@ Moments MomentsOf(const WatchReading& reading, std::size_t columns) {
     m.columns.push_back(static_cast<std::int64_t>(
         static_cast<double>(m.end_ns) * static_cast<double>(c) / static_cast<double>(columns)));
   m.columns.back() = m.end_ns;
-  m.all = m.columns;
-  m.all.push_back(m.last_ns);
-  std::ranges::sort(m.all);
-  m.all.erase(std::unique(m.all.begin(), m.all.end()), m.all.end());
   return m;
 }
 
-void AddTimes(const StateSums& sums, std::int64_t begin_ns, std::int64_t end_ns, StateTimes& to) {
+void AddTimes(StateClock& clock, std::int64_t begin_ns, std::int64_t end_ns, TimeByState& to) {
   for (std::size_t s = 0; s < kStateCount; ++s)
-    to[s] += sums.Between(static_cast<State>(s), begin_ns, end_ns);
+    to[s] += static_cast<std::int64_t>(SpentIn(clock, static_cast<State>(s), begin_ns, end_ns));
 }
 
 /// Ranks in at most `most` lines, each of about as many neighbours; a host has one of its own.
@@ -136,16 +132,16 @@ std::vector<Row> RowsOf(const Trace& trace, std::size_t most) {
 void Fill(Row& row, const Analysis& analysis, const Moments& m) {
   row.columns.resize(m.columns.size() - 1);
   for (const int rank : row.ranks) {
-    const StateSums sums(analysis, *analysis.trace.MainOf(rank), m.all);
+    StateClock clock(analysis, *analysis.trace.MainOf(rank));
     for (std::size_t c = 0; c < row.columns.size(); ++c)
-      AddTimes(sums, m.columns[c], m.columns[c + 1], row.columns[c]);
-    AddTimes(sums, m.last_ns, m.end_ns, row.last);
-    AddTimes(sums, 0, m.end_ns, row.whole);
+      AddTimes(clock, m.columns[c], m.columns[c + 1], row.columns[c]);
+    AddTimes(clock, m.last_ns, m.end_ns, row.last);
+    AddTimes(clock, 0, m.end_ns, row.whole);
   }
 }
 
 /// The state with most of the time; none: mostly nobody was there.
-std::optional<State> MostOf(const StateTimes& times, std::int64_t whole_ns) {
+std::optional<State> MostOf(const TimeByState& times, std::int64_t whole_ns) {
   const auto most = std::ranges::max_element(times);
   std::int64_t sum = 0;
   for (const std::int64_t t : times) sum += t;
@@ -154,7 +150,7 @@ std::optional<State> MostOf(const StateTimes& times, std::int64_t whole_ns) {
 }
 
 /// States side by side, as long as their shares, and the share of user.
-std::string ShareText(const StateTimes& times, std::int64_t whole_ns, Painter& painter) {
+std::string ShareText(const TimeByState& times, std::int64_t whole_ns, Painter& painter) {
   std::int64_t done = 0;
   std::size_t shown = 0;
   const auto cells = [whole_ns](std::int64_t ns) {

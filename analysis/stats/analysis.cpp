@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "analysis/stats/causes.h"
+#include "analysis/stats/estimate.h"
 #include "analysis/stats/location_scan.h"
 #include "analysis/stats/store.h"
 
@@ -27,13 +28,17 @@ Analysis::Analysis(const Trace& of, std::vector<LocationScan> scans) : trace(of)
 /// What needs all locations.
 void Analysis::Join(std::vector<LocationScan> scans) {
   std::vector<LocationActivity> activities;
+  std::vector<LocationPaths> found;
   profiles.clear();
   steps.clear();
   kernel.clear();
+  overheads.clear();
   for (LocationScan& s : scans) {
     profiles.push_back(std::move(s.profile));
     steps.insert(steps.end(), s.steps.begin(), s.steps.end());
     kernel.emplace_back(std::move(s.activity.system_calls));
+    overheads.push_back(std::move(s.overhead));
+    if (s.paths) found.push_back(std::move(*s.paths));
     activities.push_back(std::move(s.activity));
   }
   std::ranges::stable_sort(steps, {}, &BudgetStep::time_ns);
@@ -49,6 +54,28 @@ void Analysis::Join(std::vector<LocationScan> scans) {
   }
   health.Add(mpi.health);
   health.ForgiveUnfinished();
+  if (found.size() == scans.size()) KeepPaths(std::move(found));
+}
+
+void Analysis::NeedPaths() const {
+  if (paths && sample_paths) return;
+  std::vector<LocationPaths> found(trace.locations().size());
+  trace.ForEachLocation("reading call paths",
+                        [&](const Location& l) { found[l.index] = PathsOf(trace, l, {}); });
+  KeepPaths(std::move(found));
+  SaveAnalysis(*this);
+}
+
+void Analysis::KeepPaths(std::vector<LocationPaths> found) const {
+  paths.emplace();
+  sample_paths.emplace();
+  for (const Location& l : trace.locations()) {
+    LocationPaths& of = found[l.index];
+    if (!HasBudget(trace.ProcessOf(l)))
+      overheads[l.index] = OverheadFrom(trace, l, profiles[l.index], of);
+    paths->push_back(std::move(of.events));
+    sample_paths->push_back(std::move(of.samples));
+  }
 }
 
 std::vector<Blame> BlameOf(const Analysis& analysis, const Selection& selection) {

@@ -13,6 +13,7 @@
 #include "analysis/stats/critical_path.h"
 #include "analysis/stats/imbalance_split.h"
 #include "analysis/stats/kernel_time.h"
+#include "analysis/stats/path_scan.h"
 #include "analysis/stats/phases.h"
 #include "analysis/stats/selection.h"
 #include "analysis/stats/time_sums.h"
@@ -89,7 +90,9 @@ struct Analysis {
   std::vector<BudgetStep> steps;  // in order of time
   KernelTime kernel;              // by location
   TimeSums sums;                  // for pictures of any span
-  TraceHealth health;             // all that is wrong with the archive
+  /// What recording cost, by location: of runs with a budget; of others NeedPaths finds it.
+  mutable std::vector<std::vector<RegionOverhead>> overheads;
+  TraceHealth health;  // all that is wrong with the archive
   // What not everyone asks for: made when it is, and then kept in the index as well.
   // Of the whole run; ask CausesOf.
   mutable std::optional<std::vector<Blame>> blames;
@@ -97,9 +100,16 @@ struct Analysis {
   mutable std::optional<std::vector<PathRow>> path_rows;
   mutable std::optional<std::vector<Phase>> phases;
   mutable std::optional<std::vector<SplitPart>> split;
+  // By location; there, and overheads complete, once NeedPaths was called.
+  mutable std::optional<std::vector<std::vector<PathNode>>> paths;
+  mutable std::optional<std::vector<std::vector<PathNode>>> sample_paths;
+
+  /// Reads all events again, unless that was done before.
+  void NeedPaths() const;
 
  private:
   void Join(std::vector<LocationScan> scans);
+  void KeepPaths(std::vector<LocationPaths> found) const;
 };
 
 /// Those of the whole run are made once.

@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "analysis/stats/blame_origins.h"
 #include "analysis/stats/idle_curve.h"
 #include "analysis/stats/wait_patterns.h"
 
@@ -45,7 +46,6 @@ class Charger {
 
   std::vector<BlamePiece> Charge() {
     for (int rank = 0; rank < graph_.RankEnd(); ++rank) {
-      if (!selection_.HasRank(rank)) continue;
       std::int64_t last_end_ns = 0;
       std::int64_t last_ns = 0;
       for (const WaitSpan& w : graph_.OfRank(rank)) {
@@ -61,6 +61,8 @@ class Charger {
     JoinTurns();
     for (BlamePiece& p : pieces_)
       if (IsTurn(p)) p.kind = std::max(p.kind, WaitKind::kSerialisation);
+    ChargeOrigins(graph_, pieces_);
+    std::erase_if(pieces_, [this](const BlamePiece& p) { return !selection_.HasRank(p.waiter); });
     return std::move(pieces_);
   }
 
@@ -107,7 +109,8 @@ class Charger {
 
   void AddPiece(int culprit, std::int64_t begin_ns, std::int64_t end_ns, WaitKind kind) {
     if (end_ns <= begin_ns) return;
-    pieces_.push_back({begin_ns, end_ns, waiter_, culprit, static_cast<std::uint32_t>(now_), kind});
+    pieces_.push_back(
+        {begin_ns, end_ns, begin_ns, waiter_, culprit, static_cast<std::uint32_t>(now_), kind});
   }
 
   void ChargeWait(int rank, const WaitSpan& w) {
@@ -126,7 +129,8 @@ class Charger {
     const std::span<BlamePiece> run = std::span(pieces_).subspan(run_begin_);
     run_begin_ = pieces_.size();
     if (TurnsTaken(run))
-      for (const BlamePiece& p : run) turns_.push_back({p.culprit, p.begin_ns, p.end_ns});
+      for (const BlamePiece& p : run)
+        if (!IsHost(p.culprit)) turns_.push_back({p.culprit, p.begin_ns, p.end_ns});
     handed_ = false;
   }
 
@@ -154,24 +158,30 @@ class Charger {
     return t.rank == p.culprit && middle_ns < t.end_ns;
   }
 
+  /// A host hands out work and puts together what comes back: that is no turn, and what is mostly a
+  /// wait for it is none for turns.
   bool TurnsTaken(std::span<const BlamePiece> run) {
     if (run.size() < 2) return false;
     std::map<std::int32_t, double> shares;  // by culprit
     double sum_ns = 0;
+    double turns_ns = 0;
     for (const BlamePiece& p : run) {
       const auto ns = static_cast<double>(p.end_ns - p.begin_ns);
-      if (!IsHost(p.culprit)) shares[p.culprit] += ns;
       sum_ns += ns;
+      if (IsHost(p.culprit)) continue;
+      shares[p.culprit] += ns;
+      turns_ns += ns;
     }
     double squares = 0;
-    for (const auto& [culprit, ns] : shares) squares += ns * ns / (sum_ns * sum_ns);
+    for (const auto& [culprit, ns] : shares) squares += ns * ns / (turns_ns * turns_ns);
     const double others = static_cast<double>(ranks_) - 1;
-    if (squares <= 0 || shares.size() < 2 ||
+    if (turns_ns < sum_ns / 2 || shares.size() < 2 ||
         1 / squares < std::min(kLeastTurns, kMostOthers * others))
       return false;
-    double idle_ns = 0;  // of all ranks
-    for (const BlamePiece& p : run) idle_ns += Idle().Between(p.begin_ns, p.end_ns);
-    const double idle_ranks = idle_ns / sum_ns;
+    double idle_ns = 0;  // of all ranks, during the turns
+    for (const BlamePiece& p : run)
+      if (!IsHost(p.culprit)) idle_ns += Idle().Between(p.begin_ns, p.end_ns);
+    const double idle_ranks = idle_ns / turns_ns;
     const auto ranks = static_cast<double>(ranks_);
     return handed_ ? idle_ranks >= kLeastIdle * ranks : ranks - idle_ranks <= kMostAlone;
   }

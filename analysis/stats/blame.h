@@ -4,7 +4,9 @@
 // The partner that a rank waited for may have been late because it was waiting itself. Then that
 // part of the time is the fault of the rank that it was waiting for, and so on: each moment of a
 // wait is charged to the rank at the end of the chain, the one that was not waiting at that moment
-// (wait_graph.h). Of several that were late, the one that was late last is charged.
+// (wait_graph.h). Of several that were late, the one that was late last is charged. That one may
+// have begun late because it had waited before: then it is charged where this began
+// (blame_origins.h).
 //
 // The kind of a piece is that of the waiter's call, unless the chain says more:
 //   head-of-line       the partner was itself waiting to receive from another, although what the
@@ -48,6 +50,7 @@ struct Blame {
 struct BlamePiece {
   std::int64_t begin_ns = 0;
   std::int64_t end_ns = 0;
+  std::int64_t delay_ns = 0;  // when the delay began, which was as long: then, or before
   std::int32_t waiter = 0;
   std::int32_t culprit = 0;
   std::uint32_t wait = 0;  // WaitGraph::IdOf; whose kind may be another

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Each location is scanned once, on its own core, into a tree of numbers: regions for events, words
-// of native stacks for samples. The trees are then joined by name, one location after the other, so
-// that the result does not depend on the machine.
+// The trees of locations (path_scan.h) are joined by name, one after the other, so that the result
+// does not depend on the machine.
 #include "analysis/stats/callpaths.h"
 
 #include <fmt/format.h>
@@ -9,173 +8,20 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
-#include <unordered_map>
 #include <utility>
 
 #include "analysis/stats/finding_of.h"
 #include "analysis/stats/number.h"
-#include "analysis/trace/call_stack.h"
 #include "analysis/trace/demangle.h"
-#include "analysis/trace/native_stack.h"
 
 namespace stipple {
 namespace {
 
-/// A tree whose paths are made of numbers.
-class NumberTree {
- public:
-  struct Node {
-    std::uint32_t parent;
-    std::uint64_t number;
-    PathSums own;
-  };
-
-  static constexpr std::size_t kMostPaths = 5'000;
-
-  NumberTree() : nodes_(1) {}
-  std::uint32_t Child(std::uint32_t parent, std::uint64_t number) {
-    const auto [at, is_new] =
-        children_.try_emplace({parent, number}, static_cast<std::uint32_t>(nodes_.size()));
-    if (is_new) nodes_.push_back({parent, number, {}});
-    return at->second;
-  }
-  /// The place of `number` on the path that ends at `node`, or else a new end of it.
-  /// When there are more paths than anybody can read, calls that would make a new one count for
-  /// their caller: memory stays bounded, whatever the program does.
-  std::uint32_t Folded(std::uint32_t node, std::uint64_t number) {
-    if (nodes_.size() >= kMostPaths) {
-      const auto known = folded_.find({node, number});
-      return known == folded_.end() ? node : known->second;
-    }
-    const auto [at, is_new] = folded_.try_emplace({node, number}, 0);
-    if (is_new) {
-      std::uint32_t seen = node;
-      while (seen != 0 && nodes_[seen].number != number) seen = nodes_[seen].parent;
-      at->second = seen != 0 ? seen : Child(node, number);
-    }
-    return at->second;
-  }
-  PathSums& Own(std::uint32_t node) { return nodes_[node].own; }
-  const std::vector<Node>& nodes() const { return nodes_; }
-
- private:
-  using Edge = std::pair<std::uint32_t, std::uint64_t>;
-  struct HashOfEdge {
-    std::size_t operator()(const Edge& e) const {
-      return (e.first * 0x9e3779b97f4a7c15u) ^ (e.second * 0xff51afd7ed558ccdu);
-    }
-  };
-  std::vector<Node> nodes_;  // a parent stands before its children
-  std::unordered_map<Edge, std::uint32_t, HashOfEdge> children_;
-  std::unordered_map<Edge, std::uint32_t, HashOfEdge> folded_;
-};
-
-constexpr std::uint64_t kCutFrame = ~std::uint64_t{0};  // stands for frames that were left out
-
-/// Both trees of one location.
-struct LocationPaths {
-  NumberTree events;
-  NumberTree samples;
-  bool has_events = false;
-};
-
-/// Follows the call stack; `nodes_` holds the path of each open frame.
-class PathVisitor {
- public:
-  PathVisitor(LocationPaths& paths, std::uint64_t begin, std::uint64_t end, double ns_per_tick)
-      : paths_(paths), begin_(begin), end_(end), last_(begin), ns_per_tick_(ns_per_tick) {}
-
-  void Function(std::uint32_t region, bool leave, std::uint64_t ticks) {
-    Charge(ticks);
-    paths_.has_events = true;
-    stack_.Function(region, leave);
-    Follow(leave ? 0 : 1);
-  }
-  void Record(const EventWord* record, std::uint64_t ticks) {
-    const RecordKind kind = KindOf(*record);
-    if (kind == RecordKind::kSample) return AddSample(record, ticks);
-    Charge(ticks);
-    const std::uint32_t context = stack_.context();
-    stack_.Record(record);
-    const bool switched = stack_.context() != context;
-    if (switched) nodes_.clear();
-    Follow(switched ? 0 : 1);
-    if (kind == RecordKind::kMpiSend && IsInside(ticks)) {
-      PathSums& own = paths_.events.Own(Top());
-      ++own.messages;
-      own.bytes += RecordAt<MpiSend>(record).bytes;
-    }
-  }
-  void Finish(std::uint64_t ticks) { Charge(ticks); }
-
- private:
-  bool IsInside(std::uint64_t ticks) const {
-    return begin_ <= ticks && (ticks < end_ || end_ == kNoTickLimit);
-  }
-  std::uint32_t Top() const { return nodes_.empty() ? 0 : nodes_.back(); }
-
-  /// The time since the last event is the innermost frame's.
-  void Charge(std::uint64_t ticks) {
-    const std::uint64_t now = std::clamp(ticks, begin_, end_);
-    counts_ = IsInside(ticks);
-    if (now <= last_) return;
-    if (!nodes_.empty())
-      paths_.events.Own(Top()).exclusive_ns += static_cast<double>(now - last_) * ns_per_tick_;
-    last_ = now;
-  }
-
-  /// Makes `nodes_` what the stack is now; a frame that is new has `calls`.
-  void Follow(std::uint64_t calls) {
-    const auto frames = stack_.frames();
-    if (nodes_.size() > frames.size()) nodes_.resize(frames.size());
-    while (nodes_.size() < frames.size()) {
-      nodes_.push_back(paths_.events.Folded(Top(), frames[nodes_.size()]));
-      if (counts_) paths_.events.Own(nodes_.back()).calls += calls;
-    }
-  }
-
-  void AddSample(const EventWord* record, std::uint64_t ticks) {
-    if (!IsInside(ticks)) return;
-    const NativeFrames frames = FramesOf(record);
-    const std::size_t count = frames.words.size();
-    const bool inside = frames.cut != 0 && frames.cut != kUnknownCut && count > kMostOuterFrames;
-    std::uint32_t node = 0;
-    if (frames.cut != 0 && !inside) node = paths_.samples.Child(node, kCutFrame);
-    for (std::size_t i = count; i-- > 0;) {
-      // Which of two neighbours a return address belongs to is decided here: the call's.
-      node = paths_.samples.Child(node, i == 0 ? frames.words[i] : frames.words[i] - 1);
-      if (inside && i == count - kMostOuterFrames) node = paths_.samples.Child(node, kCutFrame);
-    }
-    PathSums& own = paths_.samples.Own(node);
-    ++own.samples;
-    own.exclusive_ns += static_cast<double>(RecordAt<Sample>(record).cpu_ns);
-  }
-
-  LocationPaths& paths_;
-  std::uint64_t begin_;
-  std::uint64_t end_;
-  std::uint64_t last_;
-  double ns_per_tick_;
-  bool counts_ = true;  // the event lies in the selected span
-  CallStack stack_;
-  std::vector<std::uint32_t> nodes_;
-};
-
-LocationPaths PathsOf(const Trace& trace, const Location& l, const Selection& selection) {
-  const bool whole = selection.WholeTime();
-  LocationPaths paths;
-  PathVisitor visitor(paths, whole ? 0 : trace.TicksAt(l, selection.begin_ns),
-                      whole ? kNoTickLimit : trace.TicksAt(l, selection.end_ns),
-                      trace.NsPerTick(l));
-  trace.Scan(l, visitor);
-  visitor.Finish(l.last_ticks);
-  return paths;
-}
-
-void JoinEvents(const Trace& trace, const Process& process, NumberTree& from, PathTree& to) {
-  std::vector<std::size_t> place(from.nodes().size(), to.Root());
+void JoinEvents(const Trace& trace, const Process& process, const std::vector<PathNode>& from,
+                PathTree& to) {
+  std::vector<std::size_t> place(from.size(), to.Root());
   for (std::size_t i = 1; i < place.size(); ++i) {
-    const NumberTree::Node& node = from.nodes()[i];
+    const PathNode& node = from[i];
     const std::uint32_t region = process.regions[node.number];
     place[i] = to.Child(place[node.parent], trace.regions()[region].name);
     to.Own(place[i]) += node.own;
@@ -188,12 +34,13 @@ bool StartsThreads(const FrameName& frame) {
          frame.module == "libpthread.so.0";
 }
 
-void JoinSamples(const Trace& trace, const Process& process, NumberTree& from, PathTree& to) {
-  std::vector<std::size_t> place(from.nodes().size(), to.Root());
+void JoinSamples(const Trace& trace, const Process& process, const std::vector<PathNode>& from,
+                 PathTree& to) {
+  std::vector<std::size_t> place(from.size(), to.Root());
   std::vector<bool> has_children(place.size());
-  for (const NumberTree::Node& node : from.nodes()) has_children[node.parent] = true;
+  for (const PathNode& node : from) has_children[node.parent] = true;
   for (std::size_t i = 1; i < place.size(); ++i) {
-    const NumberTree::Node& node = from.nodes()[i];
+    const PathNode& node = from[i];
     std::size_t& at = place[i] = place[node.parent];
     if (node.number == kCutFrame) {
       at = to.Child(at, "...");
@@ -256,20 +103,13 @@ void AddRows(const PathTree& tree, bool sampled, std::vector<std::string> path, 
                                sampled ? none : CountCell(node.own.messages),
                                sampled ? none : CountCell(node.own.bytes),
                                sampled ? CountCell(node.samples_below) : none));
+    if (table.columns.size() > table.rows.back().size())
+      table.rows.back().push_back(sampled ? none : CountCell(node.own.folded));
     push_children(at, depth + 1);
   }
 }
 
 }  // namespace
-
-PathSums& PathSums::operator+=(const PathSums& o) {
-  calls += o.calls;
-  exclusive_ns += o.exclusive_ns;
-  messages += o.messages;
-  bytes += o.bytes;
-  samples += o.samples;
-  return *this;
-}
 
 std::size_t PathTree::Child(std::size_t parent, std::string_view name) {
   for (std::size_t n = parent; n != Root(); n = nodes_[n].parent)
@@ -298,19 +138,47 @@ void PathTree::Finish() {
     });
 }
 
-CallPaths CallPathsOf(const Trace& trace, const Selection& selection) {
+namespace {
+
+/// What was found in each location; of the selected ranks and span.
+struct FoundPaths {
+  std::vector<std::vector<PathNode>> events;
+  std::vector<std::vector<PathNode>> samples;
+};
+
+FoundPaths PathsOfSpan(const Trace& trace, const Selection& selection) {
   std::vector<const Location*> selected;
   for (const Location& l : trace.locations())
     if (selection.HasRank(l.rank)) selected.push_back(&l);
-  std::vector<LocationPaths> parts(trace.locations().size());
-  trace.ForEachOf(selected, "reading",
-                  [&](const Location& l) { parts[l.index] = PathsOf(trace, l, selection); });
+  FoundPaths found;
+  found.events.resize(trace.locations().size());
+  found.samples.resize(trace.locations().size());
+  trace.ForEachOf(selected, "reading", [&](const Location& l) {
+    LocationPaths paths = PathsOf(trace, l, selection);
+    found.events[l.index] = std::move(paths.events);
+    found.samples[l.index] = std::move(paths.samples);
+  });
+  return found;
+}
+
+}  // namespace
+
+CallPaths CallPathsOf(const Analysis& analysis, const Selection& selection) {
+  const Trace& trace = analysis.trace;
+  FoundPaths of_span;
+  if (selection.WholeTime())
+    analysis.NeedPaths();
+  else
+    of_span = PathsOfSpan(trace, selection);
+  const auto& events = selection.WholeTime() ? *analysis.paths : of_span.events;
+  const auto& samples = selection.WholeTime() ? *analysis.sample_paths : of_span.samples;
   CallPaths paths;
-  for (const Location* l : selected) {
-    LocationPaths& part = parts[l->index];
-    JoinEvents(trace, trace.ProcessOf(*l), part.events, paths.events);
-    JoinSamples(trace, trace.ProcessOf(*l), part.samples, paths.samples);
-    paths.has_events |= part.has_events;
+  for (const Location& l : trace.locations()) {
+    if (!selection.HasRank(l.rank)) continue;
+    JoinEvents(trace, trace.ProcessOf(l), events[l.index], paths.events);
+    JoinSamples(trace, trace.ProcessOf(l), samples[l.index], paths.samples);
+    paths.has_events |= events[l.index].size() > 1;
+    for (const PathNode& node : events[l.index]) paths.folded += node.own.folded;
   }
   if (selection.regions) {
     paths.events = Through(paths.events, selection);
@@ -328,6 +196,7 @@ Table CallPathsTable(const CallPaths& paths) {
   for (const char* name :
        {"path", "calls", "inclusive_s", "exclusive_s", "messages", "bytes", "samples"})
     table.columns.push_back({name});
+  if (paths.folded != 0) table.columns.push_back({"folded_calls"});
   AddRows(paths.events, false, {}, table);
   if (paths.sample_count == 0) return table;
   std::vector<std::string> root;
@@ -336,6 +205,7 @@ Table CallPathsTable(const CallPaths& paths) {
     root.emplace_back(kSamplesPath);
     table.rows.push_back(
         RowOf(root, none, paths.sampled_ns * 1e-9, 0.0, none, none, CountCell(paths.sample_count)));
+    if (paths.folded != 0) table.rows.back().emplace_back();
   }
   AddRows(paths.samples, true, root, table);
   return table;
@@ -376,9 +246,21 @@ std::string SamplesText(const CallPaths& paths) {
       worst * 100);
 }
 
+std::string FoldedText(const CallPaths& paths) {
+  if (paths.folded == 0) return {};
+  std::uint64_t calls = paths.folded;
+  for (const PathTree::Node& n : paths.events.nodes()) calls += n.own.calls;
+  return fmt::format(
+      "{} ({} of all) would have led to more than {} of a thread: they are not among the calls, "
+      "and their time is their callers'.",
+      FormatCount(paths.folded, "call"),
+      PercentText(static_cast<double>(paths.folded), static_cast<double>(calls)),
+      FormatCount(kMostPaths, "path"));
+}
+
 TableAnswer CallPathsAnswer(const Analysis& analysis, const Selection& selection,
                             const TableOptions&) {
-  const CallPaths paths = CallPathsOf(analysis.trace, selection);
+  const CallPaths paths = CallPathsOf(analysis, selection);
   TableAnswer answer{CallPathsTable(paths), "No region was visited."};
   const PathTree& tree = paths.has_events ? paths.events : paths.samples;
   const PathTree::Node* best = nullptr;
@@ -392,6 +274,7 @@ TableAnswer CallPathsAnswer(const Analysis& analysis, const Selection& selection
   answer.headline = PercentText(best->own.exclusive_ns, tree.nodes().front().inclusive_ns) +
                     " of the time is spent at the end of " + path + ".";
   if (!paths.has_events) answer.headline += " " + SamplesText(paths);
+  if (paths.folded != 0) answer.headline += " " + FoldedText(paths);
   if (!analysis.steps.empty())
     answer.headline +=
         " Of functions that the budget left without times only timed visits have time here, the "
@@ -403,7 +286,7 @@ TableAnswer SampledProfileAnswer(const Analysis& analysis, const Selection& sele
   constexpr std::size_t kExclusive = 5;
   Selection all_regions = selection;  // a region's time is its own on all paths
   all_regions.regions.reset();
-  const CallPaths paths = CallPathsOf(analysis.trace, all_regions);
+  const CallPaths paths = CallPathsOf(analysis, all_regions);
   TableAnswer answer{SampledProfileTable(paths), "No region was visited."};
   auto& rows = answer.table.rows;
   std::erase_if(rows, [&selection](const std::vector<Cell>& row) {

@@ -10,22 +10,12 @@
 #include <vector>
 
 #include "analysis/stats/analysis.h"
+#include "analysis/stats/path_scan.h"
 #include "analysis/stats/selection.h"
 #include "analysis/stats/table.h"
 #include "analysis/trace/trace.h"
 
 namespace stipple {
-
-/// What happened on one path, and nowhere below.
-struct PathSums {
-  std::uint64_t calls = 0;
-  double exclusive_ns = 0;
-  std::uint64_t messages = 0;  // sent
-  std::uint64_t bytes = 0;
-  std::uint64_t samples = 0;
-
-  PathSums& operator+=(const PathSums& o);
-};
 
 /// Paths that share their beginnings. Recursion is folded: a function that is on the path already
 /// goes on at its first place, so a path names no function twice and its time counts once.
@@ -57,7 +47,8 @@ class PathTree {
 
 /// Paths of the selected locations, summed over them.
 ///
-/// Shape:  events and samples each in a tree of their own; memory grows with the number of paths.
+/// Shape:  events and samples each in a tree of their own; of events at most kMostPaths for a
+///         location.
 /// Units:  nanoseconds; of events common time, of samples processor time.
 /// Errors: none; frames of which only the end was seen are not there.
 /// Source: Ammons, Ball, Larus, "Exploiting hardware performance counters with flow and context
@@ -68,11 +59,13 @@ struct CallPaths {
   std::uint64_t sample_count = 0;
   double sampled_ns = 0;
   bool has_events = false;
+  std::uint64_t folded = 0;  // calls that are not there: their callers have their time
 };
-CallPaths CallPathsOf(const Trace& trace, const Selection& selection);
+/// Of the whole run they are made once (Analysis::NeedPaths); for a part a scan is made.
+CallPaths CallPathsOf(const Analysis& analysis, const Selection& selection);
 
 /// A row for each path, each before those that go on from it. Samples stand below "(samples)" when
-/// there are events, too.
+/// there are events, too. The column "folded_calls" is there when calls were folded.
 Table CallPathsTable(const CallPaths& paths);
 
 /// Rows as ProfileTable's, from samples: calls are not known.
@@ -81,6 +74,10 @@ Table SampledProfileTable(const CallPaths& paths);
 /// "From 812 samples, 0.81 s of processor time: a share is an estimate, 3.4 % more or less.": the
 /// widest 95 % interval of any share.
 std::string SamplesText(const CallPaths& paths);
+
+/// "1,200 calls (3.1% of all) would have led to more than 5,000 paths of a thread: ..."; empty when
+/// all are there.
+std::string FoldedText(const CallPaths& paths);
 
 /// Both with the sentence.
 TableAnswer CallPathsAnswer(const Analysis& analysis, const Selection& selection,

@@ -63,7 +63,7 @@ class Blamer {
       if (i == 0 || key(p) != key(pieces[i - 1]))
         Begin({p.waiter, p.culprit, p.kind}, TimeGoesTo::kInnermost, asker);
       blames_.back().seconds += Seconds(p.end_ns - p.begin_ns);
-      asker.About(tickets_.back(), p.begin_ns, p.end_ns);
+      asker.About(tickets_.back(), p.delay_ns, p.delay_ns + p.end_ns - p.begin_ns);
     }
     for (const SmallMessages& s : SmallMessagesOf(trace, mpi, waits, selection)) {
       Begin({s.rank, s.rank, WaitKind::kMessageOverhead}, TimeGoesTo::kCaller, asker);
@@ -101,17 +101,19 @@ class PathFinder {
       const auto [of, is_new] = of_rank_.try_emplace(p.rank);
       if (is_new) of->second.ticket = asker.Ask(p.rank, TimeGoesTo::kInnermost);
       of->second.ns += p.end_ns - p.begin_ns;
+      if (const Location* l = trace.MainOf(p.rank); l != nullptr && l->begin_ns > p.begin_ns)
+        of->second.before_ns += std::min(p.end_ns, l->begin_ns) - p.begin_ns;
       asker.About(of->second.ticket, p.begin_ns, p.end_ns);
     }
   }
 
   const std::vector<PathPiece>& path() const { return path_; }
 
-  /// What is in no region (before a rank's first event, say) has a row without one.
+  /// What is in no region has rows of its own.
   std::vector<PathRow> Rows(const RegionAnswers& answers) const {
     std::vector<PathRow> rows;
     for (const auto& [rank, of] : of_rank_) {
-      const double all_s = Seconds(of.ns);
+      const double all_s = Seconds(of.ns - of.before_ns);
       double sum_s = 0;
       std::vector<RegionPart> parts;
       if (of.ticket.valid) parts = answers[of.ticket.location][of.ticket.group];
@@ -121,6 +123,7 @@ class PathFinder {
       for (const RegionPart& p : parts)
         if (p.seconds > 0) rows.push_back({rank, p.region, p.seconds * scale});
       if (scale == 1 && all_s > sum_s) rows.push_back({rank, 0, all_s - sum_s});
+      if (of.before_ns > 0) rows.push_back({rank, kBeforeEvents, Seconds(of.before_ns)});
     }
     std::ranges::stable_sort(rows, std::greater<>(), &PathRow::seconds);
     return rows;
@@ -131,6 +134,7 @@ class PathFinder {
   struct OfRank {
     Asker::Ticket ticket;
     std::int64_t ns = 0;
+    std::int64_t before_ns = 0;  // of these before the rank's first event
   };
   std::vector<PathPiece> path_;
   std::map<std::int32_t, OfRank> of_rank_;

@@ -28,6 +28,7 @@ std::string PlainCallName(std::string_view region) {
 }
 
 Needs NeedsOf(std::string_view plain_name) {
+  if (plain_name.starts_with("Neighbor_")) return Needs::kNeighbours;
   const auto* entry = std::ranges::find(kCollectives, plain_name, &CollectiveEntry::name);
   return entry == std::end(kCollectives) ? Needs::kAll : entry->needs;
 }

@@ -8,7 +8,9 @@
 
 namespace stipple {
 
-enum class Needs { kAll, kRoot, kAllAtRoot, kLowerRanks };
+/// Who the neighbours are was not recorded: of all the last to come before the call's end is
+/// probably one.
+enum class Needs { kAll, kRoot, kAllAtRoot, kLowerRanks, kNeighbours };
 
 /// "MPI_Ireduce" -> "Reduce"
 std::string PlainCallName(std::string_view region);

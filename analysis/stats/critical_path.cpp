@@ -7,6 +7,7 @@
 
 #include "analysis/stats/analysis.h"
 #include "analysis/stats/finding_of.h"
+#include "analysis/stats/finding_words.h"
 #include "analysis/stats/number.h"
 #include "analysis/trace/demangle.h"
 
@@ -15,7 +16,6 @@ namespace {
 
 // Of a region's time on the path a rank is named that has at least this share.
 constexpr double kNamedShare = 0.1;
-constexpr std::size_t kMostNamed = 4;
 // Imbalance on the path below this share of the run is not told.
 constexpr double kNotableShare = 0.01;
 
@@ -36,22 +36,9 @@ double LengthOf(const std::vector<PathRow>& rows) {
   return sum;
 }
 
-/// "ranks 3 and 5"; "12 ranks"
-std::string RanksText(const Trace& trace, const std::vector<int>& ranks) {
-  const std::string noun = trace.HasHost() ? "node" : "rank";
-  if (ranks.size() > kMostNamed) return std::to_string(ranks.size()) + " " + noun + "s";
-  std::string text;
-  for (std::size_t i = 0; i < ranks.size(); ++i) {
-    const bool host = trace.IsHost(ranks[i]);
-    if (i > 0) text += i + 1 == ranks.size() ? " and " : ", ";
-    if (host) {
-      text += "the host";
-    } else {
-      if (i == 0) text += noun + (ranks.size() > 1 && !trace.IsHost(ranks[1]) ? "s " : " ");
-      text += std::to_string(ranks[i]);
-    }
-  }
-  return text;
+std::string PlaceOf(const Trace& trace, std::uint32_t region) {
+  if (region == kBeforeEvents) return "(before its first event)";
+  return region == 0 ? "(outside of any function)" : trace.regions()[region].name;
 }
 
 }  // namespace
@@ -75,7 +62,8 @@ std::vector<PathPiece> CriticalPathOf(const Trace& trace, WaitGraph& graph,
 double ImbalanceOnPath(const Analysis& analysis, const std::vector<PathRow>& rows) {
   const Trace& trace = analysis.trace;
   std::vector<double> path_s(trace.regions().size());
-  for (const PathRow& r : rows) path_s[r.region] += r.seconds;
+  for (const PathRow& r : rows)
+    if (r.region < path_s.size()) path_s[r.region] += r.seconds;
   std::vector<double> mean_s(trace.regions().size());
   double ranks = 0;
   for (const Location& l : trace.locations()) {
@@ -98,10 +86,8 @@ Table CriticalPathTable(const Analysis& analysis, const std::vector<PathRow>& ro
   const double length = LengthOf(rows);
   for (const PathRow& r : rows)
     if (selection.HasRank(r.rank))
-      table.rows.push_back(
-          RowOf(std::int64_t{r.rank},
-                r.region == 0 ? Cell() : Cell(analysis.trace.regions()[r.region].name), r.seconds,
-                r.seconds / length));
+      table.rows.push_back(RowOf(std::int64_t{r.rank}, PlaceOf(analysis.trace, r.region), r.seconds,
+                                 r.seconds / length));
   return table;
 }
 
@@ -117,13 +103,10 @@ std::string CriticalPathSentence(const Analysis& analysis, const std::vector<Pat
   std::vector<int> ranks;
   for (const PathRow& r : rows)
     if (r.region == most->first && r.seconds >= kNamedShare * most->second) ranks.push_back(r.rank);
-  std::ranges::sort(ranks);
   const bool whole = selection.WholeTime();
   std::string text = "The critical path spends " + PercentText(most->second, length) + " of the " +
-                     (whole ? "run" : "span") + " in " +
-                     (most->first == 0 ? std::string("no recorded function")
-                                       : ShortName(trace.regions()[most->first].name)) +
-                     " on " + RanksText(trace, ranks);
+                     (whole ? "run" : "span") + " in " + ShortName(PlaceOf(trace, most->first)) +
+                     " on " + RankWords(trace).Many(ranks);
   const double imbalance_s = whole ? ImbalanceOnPath(analysis, rows) : 0;
   if (imbalance_s >= kNotableShare * length)
     text += "; " + FormatSeconds(imbalance_s) + " of its work is more than the mean rank's";

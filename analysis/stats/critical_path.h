@@ -31,10 +31,14 @@ struct PathPiece {
   std::int64_t end_ns = 0;
 };
 
+/// Instead of a region: the path is on a rank that has no event yet (its process was being
+/// started).
+inline constexpr std::uint32_t kBeforeEvents = 0xffffffff;
+
 /// Time that the path spends in a region of a rank.
 struct PathRow {
   std::int32_t rank = 0;
-  std::uint32_t region = 0;  // 0: none, or not known
+  std::uint32_t region = 0;  // 0: outside of any; kBeforeEvents
   double seconds = 0;
 };
 

@@ -53,6 +53,8 @@
 #include <map>
 #include <utility>
 
+#include "analysis/trace/whole_scan.h"
+
 namespace stipple {
 namespace {
 
@@ -207,34 +209,34 @@ void Add(Part& to, const Part& part) {
 
 class Estimator {
  public:
-  Estimator(const Trace& trace, const Location& location, const EstimateVisitor& visitor)
-      : visitor_(visitor),
-        prices_(visitor.prices()),
+  Estimator(const Trace& trace, const Location& location, const Tallies& tallies)
+      : tallies_(tallies),
+        prices_(tallies.prices),
         ns_per_tick_(trace.NsPerTick(location)),
-        accounts_(visitor.regions().size()),
-        sums_(visitor.regions().size()) {
+        accounts_(tallies.regions.size()),
+        sums_(tallies.regions.size()) {
     ChargeCosts();
     MoveSamples();
   }
 
   RegionTime TimeOf(std::size_t r) const {
-    const RegionTally& tally = visitor_.regions()[r];
+    const RegionTally& tally = tallies_.regions[r];
     const Bounded inclusive = InclusiveOf(r) * ns_per_tick_;
     const Bounded exclusive = ExclusiveOf(r) * ns_per_tick_;
     return {0,
-            tally.timed_visits + tally.other_visits,
+            tally.Calls() + tally.other_visits,
             inclusive.value,
             exclusive.value,
             inclusive.Ends(),
             exclusive.Ends()};
   }
   RegionOverhead OverheadOf(std::size_t r) const {
-    const RegionTally& tally = visitor_.regions()[r];
+    const RegionTally& tally = tallies_.regions[r];
     const Bounded corrected = ExclusiveOf(r);
     const double cost = accounts_[r].cost;
     return {
         0,
-        2 * tally.timed_visits + tally.other_events,
+        2 * tally.Calls() + tally.other_events,
         tally.other_visits - std::min<std::uint64_t>(tally.other_visits, tally.samples.size()),
         (corrected.value + cost) * ns_per_tick_,
         cost * ns_per_tick_,
@@ -245,9 +247,9 @@ class Estimator {
   /// Of a sparse run, how much of the price of clocked events is paid.
   double SparsePart() const {
     std::uint64_t events = 0;
-    for (const RegionTally& t : visitor_.regions()) events += 2 * t.timed_visits;
-    const std::uint64_t unclocked = std::min(events, visitor_.unclocked_events());
-    if (!visitor_.is_sparse() || events == 0 || prices_.timed == 0) return 1;
+    for (const RegionTally& t : tallies_.regions) events += 2 * t.Calls();
+    const std::uint64_t unclocked = std::min(events, tallies_.unclocked_events);
+    if (!tallies_.is_sparse || events == 0 || prices_.timed == 0) return 1;
     const double share = static_cast<double>(unclocked) / static_cast<double>(events);
     return 1 -
            share * (1 - static_cast<double>(prices_.no_clock) / static_cast<double>(prices_.timed));
@@ -256,10 +258,10 @@ class Estimator {
   void ChargeCosts() {
     sparse_ = SparsePart();
     for (std::size_t r = 0; r < accounts_.size(); ++r) {
-      const RegionTally& t = visitor_.regions()[r];
-      const auto timed = static_cast<double>(t.timed_visits * prices_.timed_inner +
+      const RegionTally& t = tallies_.regions[r];
+      const auto timed = static_cast<double>(t.Calls() * prices_.timed_inner +
                                              t.timed_children * prices_.TimedOuter());
-      const auto all = static_cast<double>(t.exclusive);
+      const auto all = static_cast<double>(t.Exclusive());
       const double cost = (timed * sparse_ + static_cast<double>(t.other_cost)) / kPriceUnit;
       accounts_[r].cost = std::min(cost, all);
       accounts_[r].timed = all - accounts_[r].cost;
@@ -269,9 +271,9 @@ class Estimator {
   void MoveSamples() {
     std::vector<double> wanted(accounts_.size(), 0);
     for (std::size_t q = 0; q < sums_.size(); ++q) {
-      sums_[q] = SumsOf(visitor_.regions()[q], prices_, ns_per_tick_);
+      sums_[q] = SumsOf(tallies_.regions[q], prices_, ns_per_tick_);
       const double visits = sums_[q].inclusive.visits;
-      const auto pending = static_cast<double>(visitor_.regions()[q].pending);
+      const auto pending = static_cast<double>(tallies_.regions[q].pending);
       for (auto& [p, part] : sums_[q].around) {
         AddRest(part, pending, visits);
         part.ticks = std::max(0.0, part.ticks);
@@ -297,9 +299,9 @@ class Estimator {
   }
   /// A thread that was too short for a sample: its visits were as long as those that were timed.
   void AddUnsampled(std::size_t q) {
-    const RegionTally& t = visitor_.regions()[q];
-    if (!t.samples.empty() || t.pending == 0 || t.timed_visits == 0) return;
-    const double mean = static_cast<double>(t.exclusive) / static_cast<double>(t.timed_visits);
+    const RegionTally& t = tallies_.regions[q];
+    if (!t.samples.empty() || t.pending == 0 || t.Calls() == 0) return;
+    const double mean = static_cast<double>(t.Exclusive()) / static_cast<double>(t.Calls());
     const double ticks = std::min(total_, mean * static_cast<double>(t.pending));
     Add(accounts_[q].in, {ticks, 0, ticks, 0, 0, 0});
     accounts_[q].room += total_;
@@ -308,25 +310,25 @@ class Estimator {
     return static_cast<double>(visits * prices_.clock_read) / kPriceUnit * kReadingsDoubt * sparse_;
   }
   Bounded ExclusiveOf(std::size_t r) const {
-    const RegionTally& t = visitor_.regions()[r];
-    return accounts_[r].Exclusive(TimedDoubt(t.timed_visits + t.timed_children));
+    const RegionTally& t = tallies_.regions[r];
+    return accounts_[r].Exclusive(TimedDoubt(t.Calls() + t.timed_children));
   }
   Bounded InclusiveOf(std::size_t r) const {
-    const RegionTally& t = visitor_.regions()[r];
+    const RegionTally& t = tallies_.regions[r];
     const Bounded exclusive = ExclusiveOf(r);
     const Part& part = sums_[r].inclusive;
-    const double cost = static_cast<double>(t.inclusive_cost) / kPriceUnit;
-    const double timed = std::max(0.0, static_cast<double>(t.inclusive) - cost);
+    const double cost = static_cast<double>(t.InclusiveCost()) / kPriceUnit;
+    const double timed = std::max(0.0, static_cast<double>(t.Inclusive()) - cost);
     const double value =
         std::clamp(timed + part.ticks, exclusive.value, std::max(exclusive.value, total_));
-    const double doubt = std::sqrt(part.variance) + part.linear + TimedDoubt(t.timed_visits);
+    const double doubt = std::sqrt(part.variance) + part.linear + TimedDoubt(t.Calls());
     const double most = std::max(value, total_);
     if (t.recursive) return {value, exclusive.low, most};
     return {value, std::clamp(value - doubt, exclusive.low, value),
             std::clamp(value + doubt, value, most)};
   }
 
-  const EstimateVisitor& visitor_;
+  const Tallies& tallies_;
   const EventPrices& prices_;
   double ns_per_tick_;
   double sparse_ = 1;
@@ -347,25 +349,56 @@ bool IsSparse(const Process& process) {
 
 LocationEstimate EstimateFrom(const Trace& trace, const Location& location,
                               const EstimateVisitor& visitor) {
+  return EstimateFrom(trace, location,
+                      Tallies{visitor.regions(), visitor.steps(), visitor.prices(),
+                              visitor.is_sparse(), visitor.unclocked_events()});
+}
+
+LocationEstimate EstimateFrom(const Trace& trace, const Location& location,
+                              const Tallies& tallies) {
   const Process& process = trace.ProcessOf(location);
-  const Estimator estimator(trace, location, visitor);
+  const Estimator estimator(trace, location, tallies);
   LocationEstimate estimate;
   for (std::size_t r = 0; r < process.regions.size(); ++r) {
-    const RegionTally& tally = visitor.regions()[r];
-    if (tally.timed_visits == 0 && tally.other_visits == 0 && tally.inclusive == 0 &&
-        tally.exclusive == 0)
+    const RegionTally& tally = tallies.regions[r];
+    if (tally.Calls() == 0 && tally.other_visits == 0 && tally.Inclusive() == 0 &&
+        tally.Exclusive() == 0)
       continue;
     estimate.profile.push_back(estimator.TimeOf(r));
     estimate.overhead.push_back(estimator.OverheadOf(r));
     estimate.profile.back().region = estimate.overhead.back().region = process.regions[r];
   }
-  for (const ModeStep& step : visitor.steps()) {
+  for (const ModeStep& step : tallies.steps) {
     const std::uint32_t region =
         step.region < process.regions.size() ? process.regions[step.region] : 0;
     estimate.steps.push_back({trace.TimeNs(location, step.ticks), location.index, region, step.mode,
                               step.visits, step.mean_ticks * trace.NsPerTick(location)});
   }
   return estimate;
+}
+
+std::vector<RegionOverhead> OverheadFrom(const Trace& trace, const Location& location,
+                                         const LocationProfile& profile,
+                                         const LocationPaths& paths) {
+  const Process& process = trace.ProcessOf(location);
+  const bool has_estimates = paths.unclocked != 0 && !IsSparse(process);
+  if (trace.kept() || has_estimates || !process.stream->visit_counts.empty())
+    return EstimateOf(trace, location, {}).overhead;
+  std::vector<RegionTally> tallies(paths.regions.size() + 1);
+  auto time = profile.begin();  // of the regions that were called, in the same order
+  for (std::size_t r = 0; r < paths.regions.size(); ++r) {
+    if (paths.regions[r].calls == 0 || time == profile.end()) continue;
+    // As the visitor would have it, but for inclusive times, which the overhead does not depend on.
+    tallies[r].events = 2 * paths.regions[r].calls * VisitSums::kEvent;
+    tallies[r].timed_children = paths.regions[r].children;
+    tallies[r].ticks[3] =
+        static_cast<std::uint64_t>(std::llround(time++->exclusive_ns / trace.NsPerTick(location)));
+  }
+  return EstimateFrom(
+             trace, location,
+             Tallies{
+                 tallies, {}, EventPrices::Of(*process.stream), IsSparse(process), paths.unclocked})
+      .overhead;
 }
 
 LocationEstimate EstimateOf(const Trace& trace, const Location& location,
@@ -377,7 +410,7 @@ LocationEstimate EstimateOf(const Trace& trace, const Location& location,
       whole ? location.first_ticks : trace.TicksAt(location, selection.begin_ns),
       whole ? kNoTickLimit : trace.TicksAt(location, selection.end_ns),
       EventPrices::Of(*process.stream), IsSparse(process), nullptr);
-  trace.Scan(location, visitor);
+  ScanWhole(trace, location, visitor);
   visitor.Finish(location.last_ticks,
                  whole ? std::span<const VisitCount>(process.stream->visit_counts)
                        : std::span<const VisitCount>(),

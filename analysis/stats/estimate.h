@@ -4,6 +4,8 @@
 #ifndef STIPPLE_ANALYSIS_STATS_ESTIMATE_H
 #define STIPPLE_ANALYSIS_STATS_ESTIMATE_H
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "analysis/stats/analysis.h"
@@ -20,10 +22,26 @@ struct LocationEstimate {
   std::vector<BudgetStep> steps;
 };
 
+/// What estimates are made of.
+struct Tallies {
+  std::span<const RegionTally> regions;  // of the process, and what no region had
+  std::span<const ModeStep> steps;
+  EventPrices prices;
+  bool is_sparse = false;
+  std::uint64_t unclocked_events = 0;
+};
+
 /// From a finished visitor. Errors: none; where the archive does not know what events cost, nothing
 /// is corrected.
 LocationEstimate EstimateFrom(const Trace& trace, const Location& location,
                               const EstimateVisitor& visitor);
+LocationEstimate EstimateFrom(const Trace& trace, const Location& location, const Tallies& tallies);
+
+/// What recording a run without a budget cost, from what other scans found; EstimateOf tells the
+/// same. (The rest of a ring is scanned again: what was open when it began counts, too.)
+std::vector<RegionOverhead> OverheadFrom(const Trace& trace, const Location& location,
+                                         const LocationProfile& profile,
+                                         const LocationPaths& paths);
 
 /// Scans the location.
 LocationEstimate EstimateOf(const Trace& trace, const Location& location,

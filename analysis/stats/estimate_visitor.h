@@ -15,6 +15,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "analysis/stats/visit_sums.h"
 #include "analysis/trace/anchors.h"
 #include "analysis/trace/jump_points.h"
 #include "analysis/trace/mpi_collector.h"
@@ -48,23 +49,21 @@ struct VisitSample {
   double inside = 0;  // visits that were recorded directly inside
 };
 
-/// What a location has of one region.
-struct RegionTally {
-  // Timed visits; ticks.
-  std::uint64_t timed_visits = 0;
-  std::uint64_t inclusive = 0;
-  std::uint64_t exclusive = 0;       // while it was the innermost timed frame
-  std::uint64_t inclusive_cost = 0;  // 1/256 ticks, of all recorded inside
+/// What a location has of one region. The sums are of timed visits, the time on top is that while
+/// it was the innermost timed frame, and visits of all sorts can be open.
+struct RegionTally : VisitSums {
+  Sums costs = {};                   // 1/256 ticks, of all events before; as `ticks`
   std::uint64_t timed_children = 0;  // timed visits whose innermost timed frame around it was
-  std::uint32_t open = 0;
-  std::uint32_t is_watched = 0;  // its events go to the collector, too
   // Others.
-  std::uint64_t other_cost = 0;    // 1/256 ticks, of events that are not timed, in `exclusive`
+  std::uint64_t other_cost = 0;    // 1/256 ticks, of events that are not timed, in Exclusive()
   std::uint64_t other_visits = 0;  // counted ones, too
   std::uint64_t other_events = 0;  // that were written for them
   std::uint64_t pending = 0;       // visits that no sample stands for yet
   bool recursive = false;          // a sample of it held further visits of it
   std::vector<VisitSample> samples;
+
+  /// 1/256 ticks, of all recorded inside of timed visits.
+  std::uint64_t InclusiveCost() const { return costs[1] - costs[0]; }
 };
 
 /// A step of the budget.
@@ -79,13 +78,7 @@ struct ModeStep {
 class EstimateVisitor {
  public:
   enum class FrameKind : std::uint32_t { kTimed = 0, kSample, kInside, kUnclocked };
-  struct Frame {
-    RegionTally* region;
-    RegionTally* charged;  // the innermost timed frame's, this one included
-    std::uint64_t enter;
-    std::uint64_t cost;  // of all events before it, 1/256 ticks
-    FrameKind kind;
-  };
+  using Frame = VisitFrame<RegionTally>;
 
   /// What each event touches: a local object of the scan, so that it stays in registers.
   struct Hot {
@@ -101,27 +94,30 @@ class EstimateVisitor {
     std::uint64_t timed_inner;
 
     void Function(std::uint32_t region, bool leave, std::uint64_t ticks) {
-      const std::uint64_t now = Charge(ticks);
+      const std::uint64_t now = To(ticks);
       RegionTally* const r = regions + region;
       if (r->is_watched != 0) [[unlikely]]
         owner->collector_->Function(region, leave, ticks);
       if (!leave) {
-        r->timed_visits += static_cast<std::uint64_t>(now == ticks);
-        ++top->charged->timed_children;
-        Push(r, r, now, FrameKind::kTimed);
+        if (now != ticks) r->NoCall();
+        ++owner->Charged(*this)->timed_children;
+        PushTimed(r, now);
         return;
       }
       if (top->region != r) [[unlikely]] {
-        if (r->open == 0) {
+        if (r->Open() == 0) {
           ++owner->leaves_without_enter_;
           return;
         }
         *this = owner->Repair(*this, r, ticks);
       }
-      if (top->kind == FrameKind::kTimed && top[-1].kind == FrameKind::kTimed) [[likely]]
+      if (owner->others_.empty()) [[likely]]
         PopTimed(now);
       else
         *this = owner->LeaveOther(*this, now);
+    }
+    std::size_t Block(const EventWord* words, std::size_t count, std::uint64_t offset) {
+      return owner->Block(*this, words, count, offset);
     }
     void Unclocked(std::uint32_t region, bool leave, std::uint64_t ticks) {
       if (owner->is_sparse_)
@@ -131,34 +127,33 @@ class EstimateVisitor {
       ++owner->unclocked_events_;
     }
     void Counted(const EventWord* record, std::uint32_t region, std::uint64_t ticks) {
-      *this = owner->EnterCounted(*this, record, regions + region, Charge(ticks), ticks);
+      *this = owner->EnterCounted(*this, record, regions + region, To(ticks), ticks);
     }
     void Record(const EventWord* record, std::uint64_t ticks) {
       *this = owner->Other(*this, record, ticks);
       if (owner->collector_ != nullptr) owner->collector_->Record(record, ticks);
     }
 
-    std::uint64_t Charge(std::uint64_t ticks) {
-      const std::uint64_t now = ticks < begin ? begin : ticks > end ? end : ticks;
-      top->charged->exclusive += now - last;
-      last = now;
-      return now;
+    std::uint64_t To(std::uint64_t ticks) {
+      return last = ticks < begin ? begin : ticks > end ? end : ticks;
     }
-    void Push(RegionTally* region, RegionTally* charged, std::uint64_t now, FrameKind kind) {
-      ++region->open;
+    void Push(RegionTally* region, std::uint64_t now) {
       if (top == limit) [[unlikely]] {
-        top = owner->Grow();
-        limit = owner->Limit();
+        top = owner->stack_.Grow();
+        limit = owner->stack_.limit();
       }
-      *++top = {region, charged, now, cost, kind};
+      *++top = {region, now};
+    }
+    void PushTimed(RegionTally* region, std::uint64_t now) {
+      region->costs[region->Count(0, now)] += cost;
+      owner->Charged(*this)->inside[0] += now;
+      Push(region, now);
     }
     void PopTimed(std::uint64_t now) {
-      RegionTally* const r = top->region;
-      const std::uint64_t outermost = 0 - static_cast<std::uint64_t>(--r->open == 0);
-      r->inclusive += (now - top->enter) & outermost;
-      r->inclusive_cost += (cost - top->cost + timed_inner) & outermost;
+      RegionTally* const r = (top--)->region;
+      r->costs[r->Count(1, now)] += cost + timed_inner;
       cost += timed_price;
-      --top;
+      owner->Charged(*this)->inside[1] += now;
     }
   };
 
@@ -176,7 +171,7 @@ class EstimateVisitor {
   void Finish(std::uint64_t ticks, std::span<const VisitCount> counts, std::uint32_t thread);
 
   /// Visits that are open, outermost first, between the chunks of a scan; see ProfileVisitor.
-  std::vector<OpenVisit> OpenVisits() const;
+  std::vector<OpenVisit> OpenVisits() const { return stack_.OpenVisits(hot_.top, regions_.data()); }
   bool IsPlain() const { return points_.IsPlain(); }
 
   /// By region of the process; the last is what no region had.
@@ -190,9 +185,20 @@ class EstimateVisitor {
   std::uint64_t enters_without_leave() const { return enters_without_leave_; }
 
  private:
+  /// What else there is to know of a frame that is not timed.
+  struct OtherFrame {
+    std::size_t depth;
+    RegionTally* charged;  // the innermost timed frame's
+    std::uint64_t cost;    // of all events before it, 1/256 ticks
+    FrameKind kind;
+  };
+  /// A frame of a context that waits.
+  struct WaitingFrame {
+    RegionTally* region;
+    bool is_timed;
+  };
   /// A sample that has not been left.
   struct OpenSample {
-    std::size_t depth;  // of its frame
     std::uint64_t visits;
     std::uint64_t inside;       // ticks of what was recorded directly inside
     std::uint64_t inside_cost;  // 1/256 ticks, of those events outside of their own time
@@ -218,21 +224,28 @@ class EstimateVisitor {
   std::uint32_t IndexOf(const RegionTally* region) const {
     return static_cast<std::uint32_t>(region - regions_.data());
   }
-  std::size_t Depth(const Hot& hot) const {
-    return static_cast<std::size_t>(hot.top - stack_.data());
+  /// The innermost frame that is not timed if it is that on top, else null.
+  const OtherFrame* OtherOnTop(const Hot& hot) const {
+    return others_.empty() || others_.back().depth != stack_.Depth(hot) ? nullptr : &others_.back();
   }
-  Frame* Limit() { return stack_.data() + stack_.size() - 1; }
-  /// Doubles a full stack; returns its top.
-  Frame* Grow() {
-    const std::size_t used = stack_.size();
-    stack_.resize(2 * used);
-    return stack_.data() + used - 1;
+  FrameKind KindOfTop(const Hot& hot) const {
+    const OtherFrame* const other = OtherOnTop(hot);
+    return other == nullptr ? FrameKind::kTimed : other->kind;
   }
+  /// Region of the innermost timed frame.
+  RegionTally* Charged(const Hot& hot) const {
+    const OtherFrame* const other = OtherOnTop(hot);
+    return other == nullptr ? hot.top->region : other->charged;
+  }
+  void PushOther(Hot& hot, RegionTally* region, std::uint64_t now, FrameKind kind);
+  void PopOther(Hot& hot);
+  std::size_t Block(Hot& hot, const EventWord* words, std::size_t count, std::uint64_t offset);
 
   EventPrices prices_;
   bool is_sparse_;
   std::vector<RegionTally> regions_;
-  std::vector<Frame> stack_;
+  VisitStack<RegionTally> stack_;
+  std::vector<OtherFrame> others_;        // on the stack, outermost first
   std::vector<OpenSample> open_samples_;  // outermost first
   MpiCollector* collector_;
   std::uint64_t unclocked_events_ = 0;
@@ -242,7 +255,7 @@ class EstimateVisitor {
   std::uint64_t enters_without_leave_ = 0;
   std::vector<ModeStep> steps_;
   JumpPoints points_;
-  std::unordered_map<std::uint32_t, std::vector<Frame>> waiting_;  // by context
+  std::unordered_map<std::uint32_t, std::vector<WaitingFrame>> waiting_;  // by context
   Hot hot_{};
 };
 

@@ -49,6 +49,7 @@ bool IsOverhead(const Blame& b) { return b.kind == WaitKind::kMessageOverhead; }
 struct Evidence {
   Evidence(const Analysis& of, const Selection& in, const std::vector<Blame>& all_blames)
       : analysis(of), selection(in), trace(of.trace) {
+    run_s = static_cast<double>(selection.Clamp(trace.SpanNs()) - selection.Clamp(0)) * 1e-9;
     for (const Blame& b : all_blames) {
       if (IsOverhead(b)) {
         overhead.push_back(b);
@@ -79,10 +80,6 @@ struct Evidence {
     const auto node = nodes.find(rank);
     return node == nodes.end() ? 0 : static_cast<double>(node->second.idle_ns) * 1e-9;
   }
-  std::string RunText() const {
-    const std::int64_t begin = selection.Clamp(0);
-    return FormatSeconds(static_cast<double>(selection.Clamp(trace.SpanNs()) - begin) * 1e-9);
-  }
 
   const Analysis& analysis;
   const Selection& selection;
@@ -90,6 +87,7 @@ struct Evidence {
   std::map<int, RankStates> nodes;
   std::vector<Blame> waits;
   std::vector<Blame> overhead;
+  double run_s = 0;
   double waited_s = 0;
   double span_s = 0;  // of all nodes together
   double user_s = 0;
@@ -192,9 +190,10 @@ Suspects SuspectsOf(const Evidence& e, int first) {
   return s;
 }
 
-/// "; at most 2 s of 18 s could be gained if ..."
+/// "at most 2 s of 18 s (11%) could be gained if ..."
 std::string GainText(const Evidence& e, const Finding& f, std::string_view if_mended) {
-  return "at most " + FormatSeconds(f.gain_s) + " of " + e.RunText() + " could be gained" +
+  return "at most " + FormatSeconds(f.gain_s) + " of " + FormatSeconds(e.run_s) + " (" +
+         PercentText(f.gain_s, e.run_s) + ") could be gained" +
          (if_mended.empty() ? "" : " " + std::string(if_mended)) + ".";
 }
 
@@ -225,7 +224,9 @@ void BlameSome(const Evidence& e, const Suspects& s, Finding& f) {
   f.detail = region.empty() ? ""
                             : words.Many(culprits) + (one ? " was" : " were") + " mostly in " +
                                   region + " meanwhile; ";
-  f.detail = Capitalised(f.detail + GainText(e, f, cause.if_mended));
+  const bool of_host = cause.spread && e.trace.IsHost(f.culprit);
+  f.detail =
+      Capitalised(f.detail + GainText(e, f, of_host ? "if nobody waited for it" : cause.if_mended));
 }
 
 /// The ranks wait, but for none in particular. Gain: if all were always equally late, nobody would

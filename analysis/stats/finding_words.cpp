@@ -26,10 +26,9 @@ constexpr CauseWords kCauses[] = {
     {"serialisation", "they take turns, and its turn is the longest",
      "they take turns, and those take the longest", "they take turns", false,
      "if they did not depend on each other's turns"},
-    {"head-of-line", "what the others have ready is not taken before",
-     "what the others have ready is not taken before",
-     "what is ready is not taken, because others come first", false,
-     "if messages were taken as they come"},
+    {"head-of-line", "its messages are taken first, although others are there",
+     "their messages are taken first, although others are there",
+     "messages that are there are taken last", false, "if messages were taken as they come"},
     {"message-overhead", "", "", "", false, ""},
     {"imbalance", "", "", "now one is late, now another", true, kIfSpread}};
 

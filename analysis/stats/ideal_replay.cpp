@@ -174,6 +174,7 @@ class Replay {
     for (const std::uint32_t member : completed_.Of(call)) {
       const Group& g = groups_[group_[member]];
       const CollectiveEvent& m = mpi_.collectives[member];
+      if (g.needs == Needs::kNeighbours) continue;
       if (g.needs == Needs::kLowerRanks) {
         for (std::size_t i = g.first; i < member; ++i) now_ns = std::max(now_ns, entered_ns_[i]);
       } else if (g.needs != Needs::kAllAtRoot || m.rank == m.root) {

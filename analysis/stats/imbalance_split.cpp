@@ -7,6 +7,7 @@
 #include <set>
 
 #include "analysis/stats/analysis.h"
+#include "analysis/stats/finding_words.h"
 #include "analysis/stats/number.h"
 #include "analysis/stats/states.h"
 #include "analysis/trace/demangle.h"
@@ -186,12 +187,9 @@ std::string ImbalanceSplitSentence(const Trace& trace, const std::vector<Phase>&
       what = "spends more on messages";
   }
   const Phase& phase = phases[most->phase];
-  const std::string rank = trace.IsHost(most->rank) ? std::string("The host")
-                           : trace.HasHost()        ? "Node " + std::to_string(most->rank)
-                                                    : "Rank " + std::to_string(most->rank);
-  return rank + " " + what + " than the mean, by " + FormatSeconds(most->seconds) + " between " +
-         FormatSeconds(Seconds(phase.begin_ns)) + " and " + FormatSeconds(Seconds(phase.end_ns)) +
-         ".";
+  return Capitalised(RankWords(trace).One(most->rank)) + " " + what + " than the mean, by " +
+         FormatSeconds(most->seconds) + " between " + FormatSeconds(Seconds(phase.begin_ns)) +
+         " and " + FormatSeconds(Seconds(phase.end_ns)) + ".";
 }
 
 }  // namespace stipple

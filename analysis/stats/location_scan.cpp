@@ -7,8 +7,8 @@
 #include "analysis/stats/profile.h"
 #include "analysis/stats/profile_visitor.h"
 #include "analysis/trace/bytes.h"
-#include "analysis/trace/chunks.h"
 #include "analysis/trace/mpi_collector.h"
+#include "analysis/trace/whole_scan.h"
 
 namespace stipple {
 namespace {
@@ -22,13 +22,10 @@ std::uint64_t WordsOf(const Chunk& chunk) {
 template <class Visitor>
 void ScanAll(const Trace& trace, const Location& l, Visitor& visitor) {
   AnchorGatherer anchors;
-  const Stream& stream = *trace.ProcessOf(l).stream;
-  const auto chunk_done = [&](const ScanPosition& at) {
-    ReleaseChunk(stream, l.stream->chunks[at.chunk - 1]);
+  ScanWhole(trace, l, visitor, [&](const ScanPosition& at) {
     if (at.chunk < l.stream->chunks.size())
       anchors.Take(at, WordsOf(l.stream->chunks[at.chunk - 1]), visitor);
-  };
-  trace.ScanParts(l, visitor, kNoTickLimit, chunk_done);
+  });
   trace.KeepAnchors(l, anchors.Finish());
 }
 
@@ -45,6 +42,7 @@ template <class SomeScan, class Part>
 void ForEachVector(SomeScan& scan, Part&& part) {
   part(scan.profile);
   part(scan.steps);
+  part(scan.overhead);
   part(scan.activity.calls);
   part(scan.activity.sends);
   part(scan.activity.receives);
@@ -56,10 +54,16 @@ void ForEachVector(SomeScan& scan, Part&& part) {
   part(scan.activity.thread_messages);
   part(scan.activity.system_calls);
 }
+template <class SomePaths, class Part>
+void ForEachVectorOfPaths(SomePaths& paths, Part&& part) {
+  part(paths.events);
+  part(paths.samples);
+  part(paths.regions);
+}
 
 }  // namespace
 
-LocationScan ScanLocation(const Trace& trace, const Location& l) {
+LocationScan ScanLocation(const Trace& trace, const Location& l, bool with_paths) {
   const Process& process = trace.ProcessOf(l);
   MpiCollector collector(trace, l);
   LocationScan scan;
@@ -71,6 +75,7 @@ LocationScan ScanLocation(const Trace& trace, const Location& l) {
     LocationEstimate estimate = EstimateFrom(trace, l, visitor);
     scan.profile = std::move(estimate.profile);
     scan.steps = std::move(estimate.steps);
+    scan.overhead = std::move(estimate.overhead);
     KeepUnmatched(process, visitor, scan);
   } else {
     ProfileVisitor visitor(process.RegionCount(), trace.kept() ? l.first_ticks : 0, kNoTickLimit,
@@ -81,12 +86,19 @@ LocationScan ScanLocation(const Trace& trace, const Location& l) {
     KeepUnmatched(process, visitor, scan);
   }
   scan.activity = collector.Finish();
+  if (with_paths) scan.paths = PathsOf(trace, l, {});
   return scan;
 }
 
 std::string SavedScan(const Trace& trace, const Location& l, const LocationScan& scan) {
   ByteWriter to;
-  ForEachVector(scan, [&to](const auto& items) { to.PutAll(items); });
+  const auto put = [&to](const auto& items) { to.PutAll(items); };
+  ForEachVector(scan, put);
+  to.Put<std::uint8_t>(scan.paths.has_value());
+  if (scan.paths) {
+    ForEachVectorOfPaths(*scan.paths, put);
+    to.Put(scan.paths->unclocked);
+  }
   to.Put(scan.activity.undefined_communicators);
   to.Put(scan.activity.undefined_names);
   to.Put(scan.leaves_without_enter);
@@ -100,9 +112,14 @@ std::string SavedScan(const Trace& trace, const Location& l, const LocationScan&
 
 bool LoadScan(const Trace& trace, const Location& l, std::string_view saved, LocationScan& scan) {
   ByteReader from(saved);
-  ForEachVector(scan, [&from](auto& items) {
+  const auto get = [&from](auto& items) {
     items = from.GetAll<typename std::decay_t<decltype(items)>::value_type>();
-  });
+  };
+  ForEachVector(scan, get);
+  if (from.Get<std::uint8_t>() != 0) {
+    ForEachVectorOfPaths(scan.paths.emplace(), get);
+    scan.paths->unclocked = from.Get<std::uint64_t>();
+  }
   scan.activity.undefined_communicators = from.Get<std::uint64_t>();
   scan.activity.undefined_names = from.Get<std::uint64_t>();
   scan.leaves_without_enter = from.Get<std::uint64_t>();

@@ -5,6 +5,7 @@
 #define STIPPLE_ANALYSIS_STATS_LOCATION_SCAN_H
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,13 +20,15 @@ namespace stipple {
 struct LocationScan {
   LocationProfile profile;
   std::vector<BudgetStep> steps;
+  std::vector<RegionOverhead> overhead;  // of a run with a budget
   LocationActivity activity;
+  std::optional<LocationPaths> paths;  // if they were asked for
   std::uint64_t leaves_without_enter = 0;
   std::uint64_t enters_without_leave = 0;
 };
 
-/// Reads the location once; counts and anchors are left with the trace.
-LocationScan ScanLocation(const Trace& trace, const Location& location);
+/// Reads the location once, for paths a second time; counts and anchors are left with the trace.
+LocationScan ScanLocation(const Trace& trace, const Location& location, bool with_paths = false);
 
 /// The same as bytes, with counts and anchors.
 std::string SavedScan(const Trace& trace, const Location& location, const LocationScan& scan);

@@ -27,23 +27,36 @@ RegionOverhead SumOf(const std::vector<RegionOverhead>& regions) {
   return sum;
 }
 
-/// By region of the archive, all of them.
-std::vector<RegionOverhead> ByRegion(const Analysis& analysis, const Selection& selection) {
+/// By location.
+std::vector<std::vector<RegionOverhead>> OverheadsOf(const Analysis& analysis,
+                                                     const Selection& selection) {
+  if (selection.WholeTime()) {
+    analysis.NeedPaths();
+    return analysis.overheads;
+  }
   const Trace& trace = analysis.trace;
   std::vector<const Location*> selected;
   for (const Location& l : trace.locations())
     if (selection.HasRank(l.rank)) selected.push_back(&l);
-  std::vector<std::vector<RegionOverhead>> by_location(trace.locations().size());
+  std::vector<std::vector<RegionOverhead>> overheads(trace.locations().size());
   trace.ForEachOf(selected, "reading", [&](const Location& l) {
-    by_location[l.index] = EstimateOf(trace, l, selection).overhead;
+    overheads[l.index] = EstimateOf(trace, l, selection).overhead;
   });
-  std::vector<RegionOverhead> sums(trace.regions().size());
-  for (const auto& some : by_location)
-    for (const RegionOverhead& r : some) {
+  return overheads;
+}
+
+/// By region of the archive, all of them.
+std::vector<RegionOverhead> ByRegion(const Analysis& analysis, const Selection& selection) {
+  const std::vector<std::vector<RegionOverhead>> overheads = OverheadsOf(analysis, selection);
+  std::vector<RegionOverhead> sums(analysis.trace.regions().size());
+  for (const Location& l : analysis.trace.locations()) {
+    if (!selection.HasRank(l.rank)) continue;
+    for (const RegionOverhead& r : overheads[l.index]) {
       RegionOverhead& sum = sums[r.region];
       sum = SumOf({sum, r});
       sum.region = r.region;
     }
+  }
   return sums;
 }
 

@@ -23,7 +23,7 @@ struct RunQuality {
   std::vector<RegionOverhead> regions;  // summed over locations, most cost first
 };
 
-/// Scans the selected ranks again unless they ran with a budget.
+/// Of the whole run it comes with the call paths (Analysis::NeedPaths); of a part a scan is made.
 RunQuality QualityOf(const Analysis& analysis, const Selection& selection);
 
 /// Rows region, events, counted, measured_s, cost_s, corrected_s, residual_s, residual_share, most

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "analysis/stats/analysis.h"
+#include "analysis/stats/finding_words.h"
 #include "analysis/stats/kernel_time.h"
 #include "analysis/stats/number.h"
 #include "analysis/stats/timeline_of.h"
@@ -18,6 +19,8 @@ constexpr std::size_t kFeatures = kStateCount + 1;
 // A tenth of the time that moves from one state to another, for 2 % of the run.
 constexpr double kLeastPenalty = 2 * 0.1 * 0.1 * 0.02 * kColumns;
 constexpr double kNoisePenalty = 4;
+// So many phases of the least length would fill the run.
+constexpr std::size_t kLeastParts = 50;
 
 /// Sums of a series up to each column: squared distances from the mean of any span at once.
 class Distances {
@@ -55,12 +58,15 @@ double NoiseOf(std::span<const std::vector<double>> series, std::size_t count) {
   return *middle / 2;
 }
 
-std::vector<std::size_t> Optimum(const Distances& distances, std::size_t count, double penalty) {
+/// Where no phase is shorter than `least_length`. A begin is given up when another one is better
+/// even so, which is only known of begins that are as long ago.
+std::vector<std::size_t> Optimum(const Distances& distances, std::size_t count, double penalty,
+                                 std::size_t least_length) {
   std::vector<double> least(count + 1, std::numeric_limits<double>::infinity());
   std::vector<std::size_t> from(count + 1);
   std::vector<std::size_t> candidates = {0};  // where the last phase may begin
   least[0] = -penalty;
-  for (std::size_t end = 1; end <= count; ++end) {
+  for (std::size_t end = least_length; end <= count; ++end) {
     for (const std::size_t begin : candidates) {
       const double cost = least[begin] + distances.Of(begin, end) + penalty;
       if (cost < least[end]) {
@@ -68,10 +74,12 @@ std::vector<std::size_t> Optimum(const Distances& distances, std::size_t count, 
         from[end] = begin;
       }
     }
+    const std::size_t next = end + 1 - least_length;  // may be a begin from now on
+    if (next < least_length) continue;
     std::erase_if(candidates, [&](std::size_t begin) {
-      return least[begin] + distances.Of(begin, end) > least[end];
+      return least[begin] + distances.Of(begin, next) > least[next];
     });
-    candidates.push_back(end);
+    candidates.push_back(next);
   }
   std::vector<std::size_t> begins;
   for (std::size_t end = count; end > 0; end = from[end]) begins.push_back(from[end]);
@@ -140,8 +148,10 @@ std::vector<std::size_t> ChangePointsOf(std::span<const std::vector<double>> ser
   const Distances distances(series);
   double penalty =
       kLeastPenalty + kNoisePenalty * NoiseOf(series, count) * std::log(static_cast<double>(count));
-  std::vector<std::size_t> begins = Optimum(distances, count, penalty);
-  while (begins.size() > most_phases) begins = Optimum(distances, count, penalty *= 2);
+  const std::size_t least_length = std::max<std::size_t>(1, count / kLeastParts);
+  std::vector<std::size_t> begins = Optimum(distances, count, penalty, least_length);
+  while (begins.size() > most_phases)
+    begins = Optimum(distances, count, penalty *= 2, least_length);
   return begins;
 }
 
@@ -171,7 +181,7 @@ std::vector<Phase> PhasesOf(const Analysis& analysis, const Selection& selection
   return phases;
 }
 
-std::string PhasesSentence(const std::vector<Phase>& phases) {
+std::string PhasesSentence(const Trace& trace, const std::vector<Phase>& phases) {
   if (phases.empty()) return "The archive holds no time.";
   const Phase* most = &phases.front();  // most computation above the mean, in seconds
   const auto lost_ns = [](const Phase& p) {
@@ -183,8 +193,8 @@ std::string PhasesSentence(const std::vector<Phase>& phases) {
   return "The run has " + FormatCount(phases.size(), "phase") +
          "; most is lost by imbalance between " +
          FormatSeconds(static_cast<double>(most->begin_ns) * 1e-9) + " and " +
-         FormatSeconds(static_cast<double>(most->end_ns) * 1e-9) + ", where rank " +
-         std::to_string(most->busiest_rank) + " computes " +
+         FormatSeconds(static_cast<double>(most->end_ns) * 1e-9) + ", where " +
+         RankWords(trace).One(most->busiest_rank) + " computes " +
          FormatThreeDigits(most->max_over_mean) + " times the mean.";
 }
 

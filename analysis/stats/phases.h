@@ -6,7 +6,8 @@
 // the phases' means, plus a penalty for each phase, least: the optimum, not an approximation, and
 // the same on any machine. The penalty follows the noise (differences of neighbours) and has a
 // floor, so that a phase is a tenth of the ranks' time that goes elsewhere for some percent of the
-// run; it doubles until there are few phases, so that the steps of a loop are one phase and not
+// run, and no phase is shorter than 2 %: start-up is one, not one for each rank that comes; it
+// doubles until there are few phases, so that the steps of a loop are one phase and not
 // hundreds.
 //
 // Source: Killick, Fearnhead, Eckley, "Optimal detection of changepoints with a linear
@@ -43,13 +44,13 @@ struct Phase {
 /// it is empty.
 std::vector<Phase> PhasesOf(const Analysis& analysis, const Selection& selection);
 
-/// Begins of the phases of a series, the first is 0. Each row of `series` is one feature; all are
-/// as long.
+/// Begins of the phases of a series, the first is 0; each phase is a fiftieth of it or longer. Each
+/// row of `series` is one feature; all are as long.
 std::vector<std::size_t> ChangePointsOf(std::span<const std::vector<double>> series,
                                         std::size_t most_phases);
 
 /// "The run has 3 phases; ..."
-std::string PhasesSentence(const std::vector<Phase>& phases);
+std::string PhasesSentence(const Trace& trace, const std::vector<Phase>& phases);
 
 /// Rows begin_s, end_s, user, system, message, idle, max_over_mean, busiest_rank. Shares are of the
 /// ranks' time, so user is the phase's parallel efficiency and 1 / max_over_mean

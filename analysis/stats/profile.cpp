@@ -45,10 +45,10 @@ LocationProfile ProfileFrom(const Trace& trace, const Location& location,
   const double ns_per_tick = trace.NsPerTick(location);
   LocationProfile profile;
   for (std::size_t r = 0; r < visitor.regions().size(); ++r) {
-    const RegionTicks& ticks = visitor.regions()[r];
-    if (ticks.Calls() == 0 && ticks.Inclusive() == 0 && ticks.exclusive == 0) continue;
+    const VisitSums& ticks = visitor.regions()[r];
+    if (ticks.Calls() == 0 && ticks.Inclusive() == 0 && ticks.Exclusive() == 0) continue;
     const double inclusive = static_cast<double>(ticks.Inclusive()) * ns_per_tick;
-    const double exclusive = static_cast<double>(ticks.exclusive) * ns_per_tick;
+    const double exclusive = static_cast<double>(ticks.Exclusive()) * ns_per_tick;
     Bounds inclusive_bounds{inclusive, inclusive};
     Bounds exclusive_bounds{exclusive, exclusive};
     if (!visitor.slacks().empty()) {

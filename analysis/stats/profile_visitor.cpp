@@ -6,60 +6,18 @@
 
 namespace stipple {
 
-/// Room for so many frames more.
-void ProfileVisitor::Reserve(Hot& hot, std::size_t frames) {
-  while (static_cast<std::size_t>(hot.limit - hot.top) < frames) {
-    const std::ptrdiff_t depth = hot.top - stack_.data();
-    Grow();
-    hot.top = stack_.data() + depth;
-    hot.limit = Limit();
-  }
-}
-
-// Enter or leave, at random, is a branch that no processor foretells. So both take the same way:
-// what a leave takes off the stack, an enter puts there, and it is put there for both. Only what
-// seldom happens is a branch, and for Function: a leave of a region that is not on top, and what
-// the collector wants to see, for with a call here the loop would not have its registers to itself.
 std::size_t ProfileVisitor::Block(Hot& hot, const EventWord* words, std::size_t count,
                                   std::uint64_t offset) {
-  if (TimeOf(words[0]) + offset < hot.begin || TimeOf(words[count - 1]) + offset > hot.end)
-    return 0;
-  Reserve(hot, count);
-  RegionTicks* const regions = hot.regions;
-  Frame* top = hot.top;
-  std::uint64_t last = hot.last;
-  std::size_t i = 0;
-  for (; i < count; ++i) {
-    const EventWord word = words[i];
-    const std::uint64_t now = TimeOf(word) + offset;
-    const std::uint64_t leave = (word / kLeaveBit) & 1;
-    RegionTicks* const region = regions + (word & kRegionMask);
-    Frame* const place = top + 1 - leave;
-    if (((static_cast<std::uint64_t>(place->region != region) & leave) | region->is_watched) != 0)
-        [[unlikely]]
-      break;
-    top->region->exclusive += now - last;
-    last = now;
-    *place = {region, now};
-    top = place - leave;
-    region->Count(leave, now);
-  }
-  hot.top = top;
-  hot.last = last;
-  return i;
-}
-
-std::vector<OpenVisit> ProfileVisitor::OpenVisits() const {
-  std::vector<OpenVisit> open;
-  for (const Frame* f = stack_.data(); f++ != hot_.top;)
-    open.push_back({f->enter, NumberOf(f->region)});
-  return open;
+  if (!InSpan(hot, words, count, offset)) return 0;
+  stack_.Reserve(hot, count);
+  return TakePlain(hot, words, count, offset,
+                   [](VisitSums&, VisitSums&, std::uint64_t, std::size_t) {});
 }
 
 void ProfileVisitor::Open(std::span<const OpenVisit> visits) {
   for (const OpenVisit& v : visits) {
-    RegionTicks* const region = &regions_[v.region + 1 < regions_.size() ? v.region : 0];
-    ++region->entered_before;
+    VisitSums* const region = &regions_[v.region + 1 < regions_.size() ? v.region : 0];
+    region->NoCall();
     hot_.Push(region, hot_.last);
   }
 }
@@ -72,8 +30,7 @@ void ProfileVisitor::PopLeft(Hot& hot, std::uint64_t ticks) {
 }
 
 /// Ends the frames above the innermost one of `region`.
-ProfileVisitor::Hot ProfileVisitor::Repair(Hot hot, const RegionTicks* region,
-                                           std::uint64_t ticks) {
+ProfileVisitor::Hot ProfileVisitor::Repair(Hot hot, const VisitSums* region, std::uint64_t ticks) {
   for (; hot.top->region != region; ++enters_without_leave_) PopLeft(hot, ticks);
   return hot;
 }
@@ -93,7 +50,8 @@ void ProfileVisitor::Guess(const Hot& hot, const EventWord* first, const Unclock
   const Frame* below = hot.top;
   std::uint64_t begin = run.begin;
   for (std::uint64_t gap = 0; gap <= run.events; ++gap) {
-    const std::uint32_t region = guessed_stack_.empty() ? NumberOf(below->region) : guessed_stack_.back();
+    const std::uint32_t region =
+        guessed_stack_.empty() ? NumberOf(below->region) : guessed_stack_.back();
     RegionSlack& slack = slacks_[region];
     if (std::exchange(slack.run, runs_) != runs_) {
       slack.in_run = 0;
@@ -110,7 +68,7 @@ void ProfileVisitor::Guess(const Hot& hot, const EventWord* first, const Unclock
       guessed_stack_.push_back(entered + 1 < regions_.size() ? entered : 0);
     } else if (!guessed_stack_.empty()) {
       guessed_stack_.pop_back();
-    } else if (below != stack_.data()) {
+    } else if (below != stack_.bottom()) {
       --below;
     }
   }
@@ -122,13 +80,13 @@ void ProfileVisitor::Guess(const Hot& hot, const EventWord* first, const Unclock
 }
 
 ProfileVisitor::Hot ProfileVisitor::Jump(Hot hot, const EventWord* record, std::uint64_t ticks) {
-  hot.Charge(std::clamp(ticks, hot.begin, hot.end));
+  hot.last = std::clamp(ticks, hot.begin, hot.end);
   if (KindOf(*record) == RecordKind::kOpenFrames) {
     BeginOpen(hot, record, ticks);
     return hot;
   }
   const std::uint32_t before = points_.context();
-  const auto depth = [&] { return static_cast<std::size_t>(hot.top - stack_.data()); };
+  const auto depth = [&] { return stack_.Depth(hot); };
   const std::optional<StackPlace> place = points_.After(record, depth());
   if (!place) return hot;
   if (place->context != before) SwitchContext(hot, before, place->context);
@@ -143,7 +101,7 @@ void ProfileVisitor::BeginOpen(Hot& hot, const EventWord* record, std::uint64_t 
   points_.Begin(record);
   for (const std::uint32_t r :
        OpenRegions(record, static_cast<std::uint32_t>(regions_.size() - 1))) {
-    ++regions_[r].entered_before;
+    regions_[r].NoCall();
     hot.Push(&regions_[r], hot.last);
     if (regions_[r].is_watched != 0) collector_->Function(r, false, ticks);
   }
@@ -152,15 +110,15 @@ void ProfileVisitor::BeginOpen(Hot& hot, const EventWord* record, std::uint64_t 
 /// Takes the frames of one context off the stack and puts those of another there, as if all had
 /// been left, and entered again: inclusive time does not grow while a context waits, either.
 void ProfileVisitor::SwitchContext(Hot& hot, std::uint32_t from, std::uint32_t to) {
-  if (hot.top != stack_.data()) {
-    std::vector<RegionTicks*>& frames = waiting_[from];
-    for (const Frame* f = stack_.data(); f++ != hot.top;) frames.push_back(f->region);
-    while (hot.top != stack_.data()) hot.Pop(hot.last);
+  if (hot.top != stack_.bottom()) {
+    std::vector<VisitSums*>& frames = waiting_[from];
+    for (const Frame* f = stack_.bottom(); f++ != hot.top;) frames.push_back(f->region);
+    while (hot.top != stack_.bottom()) hot.Pop(hot.last);
   }
   const auto frames = waiting_.extract(to);
   if (frames.empty()) return;
-  for (RegionTicks* const region : frames.mapped()) {
-    ++region->entered_before;
+  for (VisitSums* const region : frames.mapped()) {
+    region->NoCall();
     hot.Push(region, hot.last);
   }
 }

@@ -10,32 +10,13 @@
 #include <unordered_map>
 #include <vector>
 
+#include "analysis/stats/visit_sums.h"
 #include "analysis/trace/anchors.h"
 #include "analysis/trace/jump_points.h"
 #include "analysis/trace/mpi_collector.h"
 #include "analysis/trace/scan.h"
 
 namespace stipple {
-
-/// All that an event touches of a region: one line of the cache, and few additions. Sums of ticks
-/// wrap, their differences are right.
-struct alignas(64) RegionTicks {
-  std::uint64_t events[2] = {};      // enters, leaves; their difference is how often it is open
-  std::uint64_t ticks[3] = {};       // of enters and leaves of outermost visits; of others
-  std::uint64_t exclusive = 0;       // while it was on top of the stack
-  std::uint64_t entered_before = 0;  // enters that are no calls within the span
-  std::uint64_t is_watched = 0;      // its events go to the collector, too
-
-  std::uint64_t Open() const { return events[0] - events[1]; }
-  std::uint64_t Calls() const { return events[0] - entered_before; }
-  std::uint64_t Inclusive() const { return ticks[1] - ticks[0]; }
-  /// One enter or leave. The place of its time is computed, for whether a visit is the outermost
-  /// one depends on the recursion, which nobody can foretell.
-  void Count(std::uint64_t leave, std::uint64_t now) {
-    ticks[Open() == leave ? leave : 2] += now;
-    ++events[leave];
-  }
-};
 
 /// What is not sure about a region's exclusive time, as some events have no clock; ticks.
 struct RegionSlack {
@@ -45,23 +26,16 @@ struct RegionSlack {
   std::uint64_t in_run = 0;    // of that run
 };
 
-/// A visit that is open.
-struct Frame {
-  RegionTicks* region;
-  std::uint64_t enter;
-};
-
-/// Charges the time between two events to the region on top of the stack. Ticks are clamped into
-/// the selected span, so time outside it is nobody's. A region's inclusive time is the sum of the
-/// times at which its outermost visits end less those at which they begin. Below the outermost
-/// frame of the stack lies a region that is none, so that it is never empty.
-/// Frames of a context that waits are off the stack: its time stands still.
+/// The time between two events is that of the region on top of the stack. Ticks are clamped into
+/// the selected span, so time outside it is nobody's. Frames of a context that waits are off the
+/// stack: its time stands still.
 class ProfileVisitor {
  public:
+  using Frame = VisitFrame<VisitSums>;
   /// What each event touches: a local object of the scan, so that it stays in registers.
   struct Hot {
     ProfileVisitor* owner;
-    RegionTicks* regions;
+    VisitSums* regions;
     Frame* top;
     Frame* limit;
     std::uint64_t begin;
@@ -70,12 +44,12 @@ class ProfileVisitor {
 
     void Function(std::uint32_t region, bool leave, std::uint64_t ticks) {
       const std::uint64_t now = ticks < begin ? begin : ticks > end ? end : ticks;
-      RegionTicks* const r = regions + region;
-      Charge(now);
+      VisitSums* const r = regions + region;
+      last = now;
       if (r->is_watched != 0) [[unlikely]]
         owner->collector_->Function(region, leave, ticks);
       if (!leave) {
-        r->entered_before += static_cast<std::uint64_t>(now != ticks);
+        if (now != ticks) r->NoCall();
         Push(r, now);
       } else if (top->region == r) [[likely]] {
         Pop(now);
@@ -95,29 +69,28 @@ class ProfileVisitor {
       if (owner->collector_ != nullptr) owner->collector_->Record(record, ticks);
     }
 
-    void Charge(std::uint64_t now) {
-      top->region->exclusive += now - last;
-      last = now;
-    }
-    void Push(RegionTicks* region, std::uint64_t now) {
+    void Push(VisitSums* region, std::uint64_t now) {
       region->Count(0, now);
+      top->region->inside[0] += now;
       if (top == limit) [[unlikely]] {
-        top = owner->Grow();
-        limit = owner->Limit();
+        top = owner->stack_.Grow();
+        limit = owner->stack_.limit();
       }
       *++top = {region, now};
     }
-    void Pop(std::uint64_t now) { (top--)->region->Count(1, now); }
+    void Pop(std::uint64_t now) {
+      (top--)->region->Count(1, now);
+      top->region->inside[1] += now;
+    }
   };
 
   /// Events of MPI functions and records go to `collector`, if there is one, at the same time.
   ProfileVisitor(std::uint32_t region_count, std::uint64_t begin, std::uint64_t end,
                  MpiCollector* collector)
-      : regions_(region_count + 1), stack_(1024), collector_(collector) {
+      : regions_(region_count + 1), stack_(&regions_.back()), collector_(collector) {
     for (std::uint32_t r = 0; collector != nullptr && r < region_count; ++r)
       regions_[r].is_watched = collector->Wants(r) ? 1 : 0;
-    stack_.front() = {&regions_.back(), 0};
-    hot_ = {this, regions_.data(), stack_.data(), Limit(), begin, end, begin};
+    hot_ = {this, regions_.data(), stack_.bottom(), stack_.limit(), begin, end, begin};
   }
   ProfileVisitor(const ProfileVisitor&) = delete;
   ProfileVisitor& operator=(const ProfileVisitor&) = delete;
@@ -128,8 +101,7 @@ class ProfileVisitor {
   /// Ends the frames that are still open.
   void Finish(std::uint64_t ticks) {
     const std::uint64_t now = std::max(hot_.last, std::clamp(ticks, hot_.begin, hot_.end));
-    hot_.Charge(now);
-    while (hot_.top != stack_.data()) hot_.Pop(now);
+    while (hot_.top != stack_.bottom()) hot_.Pop(now);
   }
   /// For an index of the events, between the parts of a scan (Trace::ScanParts; costs nothing
   /// else):
@@ -138,7 +110,7 @@ class ProfileVisitor {
   ///   });
   /// The next events of at.Place() are met at at.now or later with these visits open, outermost
   /// first. Those of contexts that wait are not among them.
-  std::vector<OpenVisit> OpenVisits() const;
+  std::vector<OpenVisit> OpenVisits() const { return stack_.OpenVisits(hot_.top, regions_.data()); }
   /// Begins with these.
   void Open(std::span<const OpenVisit> visits);
   /// Ticks of the selected span.
@@ -152,7 +124,7 @@ class ProfileVisitor {
   bool IsPlain() const { return points_.IsPlain(); }
 
   /// By region of the process.
-  std::span<const RegionTicks> regions() const { return {regions_.data(), regions_.size() - 1}; }
+  std::span<const VisitSums> regions() const { return {regions_.data(), regions_.size() - 1}; }
   /// Of regions(); empty if each event had a clock.
   std::span<const RegionSlack> slacks() const { return slacks_; }
   /// None if the rest of a ring began with frames that are not known.
@@ -166,28 +138,20 @@ class ProfileVisitor {
            kind == RecordKind::kStackSwitch || kind == RecordKind::kThreadEnd ||
            kind == RecordKind::kOpenFrames;
   }
-  std::uint32_t NumberOf(const RegionTicks* region) const {
+  std::uint32_t NumberOf(const VisitSums* region) const {
     return static_cast<std::uint32_t>(region - regions_.data());
   }
   // By value: a hot part whose address is known elsewhere would not stay in registers.
-  Hot Repair(Hot hot, const RegionTicks* region, std::uint64_t ticks);
+  Hot Repair(Hot hot, const VisitSums* region, std::uint64_t ticks);
   Hot Jump(Hot hot, const EventWord* record, std::uint64_t ticks);
   void Guess(const Hot& hot, const EventWord* first, const UnclockedRun& run);
   void SwitchContext(Hot& hot, std::uint32_t from, std::uint32_t to);
   void BeginOpen(Hot& hot, const EventWord* record, std::uint64_t ticks);
   void PopLeft(Hot& hot, std::uint64_t ticks);
   std::size_t Block(Hot& hot, const EventWord* words, std::size_t count, std::uint64_t offset);
-  void Reserve(Hot& hot, std::size_t frames);
-  Frame* Limit() { return stack_.data() + stack_.size() - 1; }
-  /// Doubles a full stack; returns its top.
-  Frame* Grow() {
-    const std::size_t used = stack_.size();
-    stack_.resize(2 * used);
-    return stack_.data() + used - 1;
-  }
 
-  std::vector<RegionTicks> regions_;
-  std::vector<Frame> stack_;
+  std::vector<VisitSums> regions_;
+  VisitStack<VisitSums> stack_;
   std::vector<RegionSlack> slacks_;
   std::uint64_t runs_ = 0;
   std::vector<std::uint32_t> guessed_stack_;  // of Guess: what it enters
@@ -197,7 +161,7 @@ class ProfileVisitor {
   std::uint64_t enters_without_leave_ = 0;
   bool begin_is_known_ = true;
   JumpPoints points_;
-  std::unordered_map<std::uint32_t, std::vector<RegionTicks*>> waiting_;  // by context
+  std::unordered_map<std::uint32_t, std::vector<VisitSums*>> waiting_;  // by context
   Hot hot_{};
 };
 

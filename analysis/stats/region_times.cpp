@@ -4,55 +4,99 @@
 #include <algorithm>
 #include <limits>
 
-#include "analysis/trace/call_stack.h"
+#include "analysis/stats/frame_stack.h"
+#include "analysis/trace/whole_scan.h"
 
 namespace stipple {
 namespace {
 
+/// An open visit. Time goes to two sums: 0 is nobody's.
+struct Frame {
+  std::uint32_t region;
+  std::uint32_t inner;   // whose time it is while this is the innermost visit
+  std::uint32_t caller;  // and of the innermost region that is not MPI's
+};
+
 class RegionTimesVisitor {
  public:
+  /// Differences of these are sums over spans, modulo 2^64.
+  struct Sum {
+    std::uint64_t inner = 0;      // ticks in which the region was the innermost
+    std::uint64_t as_caller = 0;  // and in which it was the innermost that is not MPI's
+  };
+
+  struct Hot {
+    RegionTimesVisitor* owner;
+    Sum* sums;
+    Frame* top;
+    Frame* limit;
+    std::uint64_t last;
+    std::uint64_t next;  // when a span begins or ends
+
+    void Function(std::uint32_t region, bool leave, std::uint64_t ticks) {
+      if (ticks >= next) [[unlikely]]
+        *this = owner->Pass(*this, ticks);
+      Spend(ticks);
+      if (!leave) {
+        *this = owner->Enter(*this, region);
+        return;
+      }
+      if (top->region != region) [[unlikely]] {
+        top = owner->stack_.Innermost(top, region);
+        if (top->region != region) return;  // was never entered
+      }
+      --top;
+    }
+    void Record(const EventWord* record, std::uint64_t ticks) {
+      *this = owner->Record(*this, record, ticks);
+    }
+    void Spend(std::uint64_t now) {
+      sums[top->inner].inner += now - last;
+      sums[top->caller].as_caller += now - last;
+      last = now;
+    }
+  };
+
   RegionTimesVisitor(const Trace& trace, const Location& l, const RegionQuestion& question)
-      : process_(trace.ProcessOf(l)), groups_(question.groups), sums_(question.groups.size()) {
+      : process_(trace.ProcessOf(l)),
+        groups_(question.groups),
+        index_(process_.RegionCount()),
+        is_mpi_(process_.RegionCount()),
+        sums_of_(process_.RegionCount() + 1),
+        sums_(question.groups.size()),
+        stack_({process_.RegionCount(), 0, 0}) {
     for (const RegionSpan& s : question.spans) {
       if (s.end_ns <= s.begin_ns) continue;
       edges_.push_back({trace.TicksAt(l, s.begin_ns), s.group, false});
       edges_.push_back({trace.TicksAt(l, s.end_ns), s.group, true});
     }
     std::ranges::sort(edges_, {}, &Edge::ticks);
-    next_ticks_ = edges_.empty() ? kNever : edges_.front().ticks;
-    index_.resize(process_.RegionCount(), kNone);
-    is_mpi_.resize(process_.RegionCount());
     for (std::size_t r = 0; r < is_mpi_.size(); ++r)
       is_mpi_[r] = trace.regions()[process_.regions[r]].kind == RegionKind::kMpi;
+    hot_ = {this,
+            sums_of_.data(),
+            stack_.Bottom(),
+            stack_.Limit(),
+            0,
+            edges_.empty() ? kNever : edges_.front().ticks};
   }
+  RegionTimesVisitor(const RegionTimesVisitor&) = delete;
+  RegionTimesVisitor& operator=(const RegionTimesVisitor&) = delete;
 
-  void Function(std::uint32_t region, bool leave, std::uint64_t ticks) {
-    if (ticks >= next_ticks_) [[unlikely]]
-      Pass(ticks);
-    Spend(ticks);
-    stack_.Function(region, leave);
-    Look();
-  }
-  void Record(const EventWord* record, std::uint64_t ticks) {
-    if (ticks >= next_ticks_) Pass(ticks);
-    Spend(ticks);
-    if (KindOf(*record) == RecordKind::kOpenFrames)
-      stack_.Begin(record, OpenRegions(record, process_.RegionCount()));
-    stack_.Record(record);
-    Look();
-  }
+  Hot Begin() const { return hot_; }
+  void End(const Hot& hot) { hot_ = hot; }
+
   void Finish(std::uint64_t last_ticks) {
-    Pass(last_ticks);
-    Spend(last_ticks);
-    // Nothing runs behind the last event.
-    inner_ = caller_ = kNone;
-    Pass(kNever);
+    hot_ = Pass(hot_, last_ticks);
+    hot_.Spend(std::max(hot_.last, last_ticks));
+    hot_.top = stack_.Bottom();  // nothing runs behind the last event
+    hot_ = Pass(hot_, kNever);
   }
 
   std::vector<std::vector<RegionPart>> Parts(double ns_per_tick) const {
     std::vector<std::vector<RegionPart>> parts(sums_.size());
     for (std::size_t g = 0; g < sums_.size(); ++g)
-      for (std::size_t i = 0; i < sums_[g].size(); ++i) {
+      for (std::size_t i = 1; i < sums_[g].size(); ++i) {
         const Sum& sum = sums_[g][i];
         const std::uint64_t ticks = groups_[g] == TimeGoesTo::kCaller ? sum.as_caller : sum.inner;
         if (ticks == 0) continue;
@@ -64,83 +108,70 @@ class RegionTimesVisitor {
 
  private:
   static constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
-  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
   struct Edge {
     std::uint64_t ticks;
     std::uint32_t group;
     bool end;
   };
-  /// Differences of these are sums over spans, modulo 2^64.
-  struct Sum {
-    std::uint64_t inner = 0;      // ticks in which the region was the innermost
-    std::uint64_t as_caller = 0;  // and in which it was the innermost that is not MPI's
-  };
 
-  std::uint32_t IndexOf(std::uint32_t region) {
+  // By value: a hot part whose address is known elsewhere would not stay in registers.
+  Hot Enter(Hot hot, std::uint32_t region) {
     std::uint32_t& index = index_[region];
-    if (index == kNone) {
+    if (index == 0) {
       index = static_cast<std::uint32_t>(regions_.size());
       regions_.push_back(region);
-      sums_of_.emplace_back();
     }
-    return index;
+    if (hot.top == hot.limit) {
+      hot.top = stack_.Grow(hot.top);
+      hot.limit = stack_.Limit();
+    }
+    const std::uint32_t caller = is_mpi_[region] != 0 ? hot.top->caller : index;
+    *++hot.top = {region, index, caller};
+    return hot;
   }
 
-  void Spend(std::uint64_t now) {
-    if (now <= last_) return;
-    if (inner_ != kNone) sums_of_[inner_].inner += now - last_;
-    if (caller_ != kNone) sums_of_[caller_].as_caller += now - last_;
-    last_ = now;
+  Hot Record(Hot hot, const EventWord* record, std::uint64_t ticks) {
+    if (ticks >= hot.next) hot = Pass(hot, ticks);
+    hot.Spend(ticks);
+    if (KindOf(*record) == RecordKind::kOpenFrames) {
+      for (const std::uint32_t region : OpenRegions(record, process_.RegionCount()))
+        hot = Enter(hot, region);
+      stack_.BeginPoints(record);
+    }
+    hot.top = stack_.Record(hot.top, record);
+    hot.limit = stack_.Limit();
+    return hot;
   }
 
-  /// Where the stack stands now.
-  void Look() {
-    inner_ = caller_ = kNone;
-    if (stack_.depth() == 0) return;
-    const std::uint32_t top = stack_.top();
-    inner_ = IndexOf(top);
-    if (!is_mpi_[top]) {
-      caller_ = inner_;
-      return;
-    }
-    const std::span<const std::uint32_t> frames = stack_.frames();
-    for (std::size_t i = frames.size(); i-- > 0;) {
-      if (is_mpi_[frames[i]]) continue;
-      caller_ = IndexOf(frames[i]);
-      return;
-    }
-  }
-
-  void Pass(std::uint64_t now) {
+  /// Spans that begin or end until `now`.
+  Hot Pass(Hot hot, std::uint64_t now) {
     while (next_ < edges_.size() && edges_[next_].ticks <= now) {
       const Edge& edge = edges_[next_++];
-      Spend(edge.ticks);
+      hot.Spend(std::max(hot.last, edge.ticks));
       std::vector<Sum>& sums = sums_[edge.group];
-      sums.resize(sums_of_.size());
-      for (std::size_t i = 0; i < sums_of_.size(); ++i) {
+      sums.resize(regions_.size());
+      for (std::size_t i = 1; i < sums.size(); ++i) {
         const Sum& s = sums_of_[i];
         sums[i].inner += edge.end ? s.inner : -s.inner;
         sums[i].as_caller += edge.end ? s.as_caller : -s.as_caller;
       }
     }
-    next_ticks_ = next_ < edges_.size() ? edges_[next_].ticks : kNever;
+    hot.next = next_ < edges_.size() ? edges_[next_].ticks : kNever;
+    return hot;
   }
 
   const Process& process_;
   const std::vector<TimeGoesTo>& groups_;
   std::vector<Edge> edges_;
   std::size_t next_ = 0;
-  std::uint64_t next_ticks_ = kNever;
-  std::vector<std::uint32_t> index_;    // by region of the process
-  std::vector<std::uint32_t> regions_;  // those met
-  std::vector<bool> is_mpi_;
+  std::vector<std::uint32_t> index_;          // by region of the process; 0: not met
+  std::vector<std::uint32_t> regions_ = {0};  // those met, from 1 on
+  std::vector<std::uint8_t> is_mpi_;
   std::vector<Sum> sums_of_;            // of those met, up to now
   std::vector<std::vector<Sum>> sums_;  // by group
-  CallStack stack_;
-  std::uint32_t inner_ = kNone;
-  std::uint32_t caller_ = kNone;
-  std::uint64_t last_ = 0;
+  FrameStack<Frame> stack_;
+  Hot hot_{};
 };
 
 }  // namespace
@@ -154,7 +185,7 @@ RegionAnswers RegionTimesOf(const Trace& trace, const std::vector<RegionQuestion
   }
   trace.ForEachOf(asked, "finding who was late", [&](const Location& l) {
     RegionTimesVisitor visitor(trace, l, by_location[l.index]);
-    trace.Scan(l, visitor);
+    ScanWhole(trace, l, visitor);
     visitor.Finish(l.last_ticks);
     answers[l.index] = visitor.Parts(trace.NsPerTick(l));
   });

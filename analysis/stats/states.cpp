@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/stats/states.h"
 
+#include <array>
 #include <map>
 
 #include "analysis/stats/finding_of.h"
@@ -39,6 +40,14 @@ std::vector<RankStates> StatesOf(const Analysis& analysis, const Selection& sele
     states.push_back(s);
   }
   return states;
+}
+
+double SpentIn(StateClock& clock, State state, std::int64_t begin_ns, std::int64_t end_ns) {
+  constexpr std::array<double StateTimes::*, kStateCount> kOf = {
+      &StateTimes::user, &StateTimes::system, &StateTimes::message, &StateTimes::idle};
+  double StateTimes::*const of = kOf[static_cast<std::size_t>(state)];
+  const double before = clock.Before(static_cast<double>(begin_ns)).*of;
+  return clock.Before(static_cast<double>(end_ns)).*of - before;
 }
 
 Table StatesTable(const std::vector<RankStates>& states) {

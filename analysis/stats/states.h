@@ -12,6 +12,8 @@
 #include "analysis/stats/analysis.h"
 #include "analysis/stats/selection.h"
 #include "analysis/stats/table.h"
+#include "analysis/stats/time_sums.h"
+#include "analysis/stats/timeline.h"
 
 namespace stipple {
 
@@ -27,6 +29,9 @@ struct RankStates {
 
 /// One entry a rank, in the trace's order (the host last).
 std::vector<RankStates> StatesOf(const Analysis& analysis, const Selection& selection);
+
+/// Nanoseconds between two moments that a rank spent in the state.
+double SpentIn(StateClock& clock, State state, std::int64_t begin_ns, std::int64_t end_ns);
 
 /// Rows rank, user_s, system_s, message_s, idle_s.
 Table StatesTable(const std::vector<RankStates>& states);

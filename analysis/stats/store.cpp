@@ -46,6 +46,9 @@ void ForEachPart(SomeAnalysis& a, Part&& part) {
   part("path_rows", a.path_rows);
   part("phases", a.phases);
   part("split", a.split);
+  part("overheads", a.overheads);
+  part("paths", a.paths);
+  part("sample_paths", a.sample_paths);
 }
 
 class Saver {
@@ -63,6 +66,10 @@ class Saver {
   template <class T>
   void operator()(const char* name, const std::optional<std::vector<T>>& items) {
     if (items) (*this)(name, *items);
+  }
+  template <class T>
+  void operator()(const char* name, const std::optional<std::vector<std::vector<T>>>& by_location) {
+    if (by_location) (*this)(name, *by_location);
   }
   void operator()(const char* name, const std::uint64_t& number) {
     to_.Add(name, std::span(&number, 1));
@@ -119,6 +126,10 @@ class Loader {
   template <class T>
   void operator()(const char* name, std::optional<std::vector<T>>& items) {
     if (const auto found = from_.Get<T>(name); found) items.emplace(found->begin(), found->end());
+  }
+  template <class T>
+  void operator()(const char* name, std::optional<std::vector<std::vector<T>>>& by_location) {
+    if (from_.Get<T>(name)) (*this)(name, by_location.emplace());
   }
   void operator()(const char* name, std::uint64_t& number) {
     Array<std::uint64_t> found;

@@ -73,7 +73,7 @@ TableAnswer EfficiencyAnswer(const Analysis& analysis, const Selection& selectio
 
 TableAnswer Phases(const Analysis& analysis, const Selection& selection, const TableOptions&) {
   const std::vector<Phase> phases = PhasesOf(analysis, selection);
-  return {PhasesTable(analysis, phases), PhasesSentence(phases)};
+  return {PhasesTable(analysis, phases), PhasesSentence(analysis.trace, phases)};
 }
 
 TableAnswer ImbalanceSplit(const Analysis& analysis, const Selection& selection,
@@ -99,7 +99,7 @@ constexpr std::array kTables = {
                kPlaceAndMessages},
     TableEntry{"imbalance", Imbalance, "how unevenly the ranks compute, what it costs and why"},
     TableEntry{"callpaths", CallPathsAnswer, "time, calls and messages per chain of calls, a tree",
-               false, kPlaceAndRegions},
+               false, kPlaceAndRegions, true},
     TableEntry{"counters", CountersAnswer, "values of the program's own counters over time"},
     TableEntry{"channels", ChannelsAnswer, "messages between threads, and who waited for whom"},
     TableEntry{"critical-path", CriticalPath, "what the length of the run is made of"},
@@ -111,7 +111,8 @@ constexpr std::array kTables = {
                kPlaceAndMessages | kTakesWindow},
     TableEntry{"mean-size", MeanSizeAnswer, "bytes per message from each rank to each", false,
                kPlaceAndMessages},
-    TableEntry{"overhead", Overhead, "what recording each region cost, and time without it"},
+    TableEntry{"overhead", Overhead, "what recording each region cost, and time without it", false,
+               kTakesPlace, true},
     TableEntry{"phases", Phases, "parts of the run in which the ranks divide their time alike"},
     TableEntry{"sizes", SizesAnswer, "messages by size, in powers of two", true, kPlaceAndMessages},
     TableEntry{"status", StatusAnswer, "the state of each rank, moment by moment", false,

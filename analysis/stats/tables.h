@@ -33,6 +33,7 @@ struct TableEntry {
   std::string_view description;
   bool per_rank = false;         // whether it can be asked for by rank; those by rank anyway say no
   unsigned takes = kTakesPlace;  // of Takes
+  bool needs_paths = false;      // of the whole run it is made from Analysis::NeedPaths
 };
 
 std::span<const TableEntry> TableEntries();

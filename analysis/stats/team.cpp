@@ -156,11 +156,11 @@ std::vector<std::vector<const Location*>> SharesOf(const Trace& trace, int size)
   return shares;
 }
 
-void LeaveShare(const Trace& trace, const Team& team) {
+void LeaveShare(const Trace& trace, const Team& team, bool with_paths) {
   const auto share = SharesOf(trace, team.size)[static_cast<std::size_t>(team.rank)];
   std::vector<LocationScan> scans(trace.locations().size());
   trace.ForEachOf(share, "reading",
-                  [&](const Location& l) { scans[l.index] = ScanLocation(trace, l); });
+                  [&](const Location& l) { scans[l.index] = ScanLocation(trace, l, with_paths); });
   for (const std::string& place : IndexPlaces(trace.path())) {
     std::error_code error;
     fs::create_directories(fs::path(place).parent_path(), error);
@@ -176,12 +176,12 @@ void LeaveShare(const Trace& trace, const Team& team) {
                                      " cannot write its part of the result, there or in the cache");
 }
 
-std::vector<LocationScan> ScanTogether(const Trace& trace, const Team& team) {
+std::vector<LocationScan> ScanTogether(const Trace& trace, const Team& team, bool with_paths) {
   for (const std::string& place : IndexPlaces(trace.path())) RemoveOldParts(place);
   const auto shares = SharesOf(trace, team.size);
   std::vector<LocationScan> scans(trace.locations().size());
   trace.ForEachOf(shares.front(), "reading",
-                  [&](const Location& l) { scans[l.index] = ScanLocation(trace, l); });
+                  [&](const Location& l) { scans[l.index] = ScanLocation(trace, l, with_paths); });
   for (int rank = 1; rank < team.size; ++rank) {
     const auto part = WaitForPart(trace, team, rank);
     for (const Location* l : shares[static_cast<std::size_t>(rank)])

@@ -29,13 +29,13 @@ struct Team {
 /// Locations that each process of the team scans, by its rank: alike in bytes.
 std::vector<std::vector<const Location*>> SharesOf(const Trace& trace, int size);
 
-/// Scans the share of a process that is not the first and leaves it for the first. Throws
-/// InputError when it cannot be written.
-void LeaveShare(const Trace& trace, const Team& team);
+/// Scans the share of a process that is not the first, as ScanLocation does, and leaves it for the
+/// first. Throws InputError when it cannot be written.
+void LeaveShare(const Trace& trace, const Team& team, bool with_paths);
 
 /// The first process's: scans its own share and waits for those of the others. Throws InputError
 /// when one of them does not come.
-std::vector<LocationScan> ScanTogether(const Trace& trace, const Team& team);
+std::vector<LocationScan> ScanTogether(const Trace& trace, const Team& team, bool with_paths);
 
 }  // namespace stipple
 

@@ -4,13 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "analysis/stats/kernel_time.h"
 #include "analysis/stats/number.h"
-#include "analysis/stats/state_sums.h"
+#include "analysis/stats/states.h"
 #include "analysis/stats/time_steps.h"
+#include "analysis/stats/time_sums.h"
 
 namespace stipple {
 namespace {
@@ -19,8 +21,17 @@ constexpr std::int64_t kStepsInWindow = 4;
 constexpr std::array<const char*, kStateCount> kStateNames = {"user", "system", "message", "idle"};
 
 double Seconds(std::int64_t ns) { return static_cast<double>(ns) / 1e9; }
-double Share(std::int64_t part_ns, std::int64_t whole_ns) {
-  return static_cast<double>(part_ns) / static_cast<double>(whole_ns);
+
+/// The share of a state in the time between two moments.
+double Share(StateClock& clock, State state, std::int64_t begin_ns, std::int64_t end_ns) {
+  return SpentIn(clock, state, begin_ns, end_ns) / static_cast<double>(end_ns - begin_ns);
+}
+
+/// The state in which the rank reached the moment; none: it was not there.
+std::optional<State> StateAt(StateClock& clock, std::int64_t moment_ns) {
+  for (const State s : {State::kUser, State::kSystem, State::kMessage, State::kIdle})
+    if (SpentIn(clock, s, moment_ns - 1, moment_ns) > 0) return s;
+  return std::nullopt;
 }
 
 std::vector<int> SelectedRanks(const Trace& trace, const Selection& selection) {
@@ -44,20 +55,10 @@ struct Shares {
   double since_start = 0;
 };
 
-Shares SharesAt(const StateSums& sums, const TimeSteps& steps, std::size_t row) {
+Shares SharesAt(StateClock& clock, const TimeSteps& steps, std::size_t row) {
   const std::int64_t at = steps.At(row);
   const std::int64_t from = steps.WindowBegin(row);
-  return {Share(sums.Between(State::kUser, from, at), at - from),
-          Share(sums.Between(State::kUser, steps.begin_ns, at), at - steps.begin_ns)};
-}
-
-/// Calls body(rank, sums) for each.
-template <class Body>
-void ForEachSums(const Analysis& analysis, const std::vector<int>& ranks, const TimeSteps& steps,
-                 const Body& body) {
-  const std::vector<std::int64_t> bounds = steps.Bounds();
-  for (const int rank : ranks)
-    body(rank, StateSums(analysis, *analysis.trace.MainOf(rank), bounds));
+  return {Share(clock, State::kUser, from, at), Share(clock, State::kUser, steps.begin_ns, at)};
 }
 
 Table UtilisationOfNodes(const Analysis& analysis, const std::vector<int>& nodes,
@@ -68,16 +69,17 @@ Table UtilisationOfNodes(const Analysis& analysis, const std::vector<int>& nodes
     double most = 0;
   };
   std::vector<Moment> moments(nodes.empty() ? 0 : steps.count());
-  ForEachSums(analysis, nodes, steps, [&](int, const StateSums& sums) {
+  for (const int rank : nodes) {
+    StateClock clock(analysis, *analysis.trace.MainOf(rank));
     for (std::size_t row = 0; row < moments.size(); ++row) {
-      const Shares shares = SharesAt(sums, steps, row);
+      const Shares shares = SharesAt(clock, steps, row);
       Moment& m = moments[row];
       m.sum.window += shares.window;
       m.sum.since_start += shares.since_start;
       m.least = std::min(m.least, shares.window);
       m.most = std::max(m.most, shares.window);
     }
-  });
+  }
   Table table{"utilisation",
               TableShape::kRows,
               {{"time_s"}, {"window"}, {"since_start"}, {"least"}, {"most"}},
@@ -106,14 +108,14 @@ Table UtilisationTable(const Analysis& analysis, const Selection& selection,
   if (!options.per_rank)
     return UtilisationOfNodes(analysis, NodesOf(analysis.trace, selection), steps);
   std::vector<std::vector<Cell>> rows;
-  ForEachSums(analysis, SelectedRanks(analysis.trace, selection), steps,
-              [&](int rank, const StateSums& sums) {
-                for (std::size_t row = 0; row < steps.count(); ++row) {
-                  const Shares shares = SharesAt(sums, steps, row);
-                  rows.push_back(RowOf(Seconds(steps.At(row)), std::int64_t{rank}, shares.window,
-                                       shares.since_start));
-                }
-              });
+  for (const int rank : SelectedRanks(analysis.trace, selection)) {
+    StateClock clock(analysis, *analysis.trace.MainOf(rank));
+    for (std::size_t row = 0; row < steps.count(); ++row) {
+      const Shares shares = SharesAt(clock, steps, row);
+      rows.push_back(
+          RowOf(Seconds(steps.At(row)), std::int64_t{rank}, shares.window, shares.since_start));
+    }
+  }
   Table table{
       "utilisation", TableShape::kRows, {{"time_s"}, {"rank"}, {"window"}, {"since_start"}}, {}};
   AddByTime(table, std::move(rows), steps.count());
@@ -125,22 +127,22 @@ Table StatusTable(const Analysis& analysis, const Selection& selection,
   const Trace& trace = analysis.trace;
   const TimeSteps steps = StepsOf(trace, selection, options.window_ns, 1);
   std::vector<std::vector<Cell>> rows;
-  ForEachSums(
-      analysis, SelectedRanks(trace, selection), steps, [&](int rank, const StateSums& sums) {
-        const bool has_system = HasKernelTime(trace, *trace.MainOf(rank));
-        for (std::size_t row = 0; row < steps.count(); ++row) {
-          const std::int64_t at = steps.At(row);
-          const std::int64_t from = steps.StepBegin(row);
-          const std::optional<State> state = sums.At(at);
-          std::vector<Cell> cells = RowOf(Seconds(at), std::int64_t{rank}, Cell{});
-          if (state) cells.back() = std::string(kStateNames[static_cast<std::size_t>(*state)]);
-          for (const State s : {State::kUser, State::kSystem, State::kMessage, State::kIdle})
-            cells.push_back(s == State::kSystem && !has_system
-                                ? Cell{}
-                                : Cell{Share(sums.Between(s, from, at), at - from)});
-          rows.push_back(std::move(cells));
-        }
-      });
+  for (const int rank : SelectedRanks(trace, selection)) {
+    const Location& main = *trace.MainOf(rank);
+    StateClock clock(analysis, main);
+    const bool has_system = HasKernelTime(trace, main);
+    for (std::size_t row = 0; row < steps.count(); ++row) {
+      const std::int64_t at = steps.At(row);
+      const std::optional<State> state = StateAt(clock, at);
+      std::vector<Cell> cells = RowOf(Seconds(at), std::int64_t{rank}, Cell{});
+      if (state) cells.back() = std::string(kStateNames[static_cast<std::size_t>(*state)]);
+      for (const State s : {State::kUser, State::kSystem, State::kMessage, State::kIdle})
+        cells.push_back(s == State::kSystem && !has_system
+                            ? Cell{}
+                            : Cell{Share(clock, s, steps.StepBegin(row), at)});
+      rows.push_back(std::move(cells));
+    }
+  }
   Table table{"status",
               TableShape::kRows,
               {{"time_s"}, {"rank"}, {"state"}, {"user"}, {"system"}, {"message"}, {"idle"}},

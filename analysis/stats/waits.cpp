@@ -91,7 +91,7 @@ class WaitFinder {
       if (m->rank == m->root) roots.push_back(m);
     for (const CollectiveEvent& m : members) {
       // What the root needs is collected along a tree: others, too, may have had to wait for some.
-      if (needs == Needs::kAll || needs == Needs::kAllAtRoot) {
+      if (needs == Needs::kAll || needs == Needs::kAllAtRoot || needs == Needs::kNeighbours) {
         WaitForLast(m, by_entry, kind);
       } else if (needs == Needs::kRoot) {
         WaitForLast(m, roots, kind);

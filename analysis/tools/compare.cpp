@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: MIT
 // stipple compare: two runs on one scale, what changed and by how much.
-#include <fmt/format.h>
-
-#include <array>
-
 #include "analysis/report/compare_input.h"
 #include "analysis/stats/analysis.h"
 #include "analysis/tools/command.h"
@@ -11,14 +7,11 @@
 #include "analysis/tools/progress.h"
 #include "analysis/tools/selection_options.h"
 #include "analysis/tools/views_library.h"
-#include "analysis/trace/input_error.h"
 
 namespace stipple {
 namespace {
 
 constexpr std::size_t kColumns = 1024;
-
-using DrawFunction = decltype(&stipple_draw_compare);
 
 }  // namespace
 
@@ -37,8 +30,7 @@ int RunCompare(const Arguments& arguments) {
   selected.AddTo(app);
   if (!app.Parse(arguments)) return 0;
   if (output.empty()) output = "compare.html";
-  const auto draw =
-      reinterpret_cast<DrawFunction>(FunctionOfViews("stipple compare", "stipple_draw_compare"));
+  const Drawer<CompareInput> draw("stipple compare", "stipple_draw_compare");
   ProgressLine progress;
   const Trace trace_a = Trace::Open(first, progress.meter());
   const Trace trace_b = Trace::Open(second, progress.meter());
@@ -49,10 +41,8 @@ int RunCompare(const Arguments& arguments) {
   CompareInput input = CompareInputOf(a, b, of_a, of_b, kColumns);
   input.mono = mono;
   trace_b.BeginPhase("drawing the page", 0);
-  std::array<char, 1024> error{};
-  const int failed = draw(&input, output.c_str(), error.data(), error.size());
+  draw(input, output);
   progress.Stop();
-  if (failed != 0) throw InputError(output, error.data());
   std::string text = input.headline + "\n";
   for (const std::string& note : input.notes) text += note + "\n";
   WriteOut(text + output + "\n");

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 
 #include "analysis/exemplar/experiments.h"
@@ -17,8 +16,6 @@ namespace stipple {
 namespace {
 
 namespace fs = std::filesystem;
-
-using DrawFunction = decltype(&stipple_draw_exemplar);
 
 std::string KnownExperiments() {
   std::string text;
@@ -62,15 +59,12 @@ int RunExemplar(const Arguments& arguments) {
   app.Add({"--quick", "", "small and rough: to see that it works"}, setup.quick);
   if (!app.Parse(arguments)) return 0;
   const Experiment& experiment = ExperimentNamed(name);
-  const auto draw =
-      reinterpret_cast<DrawFunction>(FunctionOfViews("stipple exemplar", "stipple_draw_exemplar"));
+  const Drawer<ExemplarInput> draw("stipple exemplar", "stipple_draw_exemplar");
   setup.programs = fs::read_symlink("/proc/self/exe").parent_path().string();
   setup.run = RunProgram;
   MakeFolder(setup.folder);
   const ExemplarInput input = experiment.charts(setup);
-  std::array<char, 1024> error{};
-  if (draw(&input, setup.folder.c_str(), error.data(), error.size()) != 0)
-    throw InputError(setup.folder, error.data());
+  draw(input, setup.folder);
   WriteOut(fmt::format("{} charts: {}/index.html\n", input.charts.size(), setup.folder));
   return 0;
 }

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -239,11 +238,9 @@ int RunPlot(const Arguments& arguments) {
   const Analysis analysis(trace);
   const Plot plot = Compute(analysis, selection, options, choice, choices);
   trace.BeginPhase("drawing", 0);
-  std::array<char, 1024> error{};
-  const int failed = FunctionOf<decltype(&stipple_draw_plot)>("stipple_draw_plot")(
-      &plot.input, options.output.c_str(), error.data(), error.size());
+  const Drawer<PlotInput> draw(kCommand, "stipple_draw_plot");
+  draw(plot.input, options.output);
   progress.Stop();
-  if (failed != 0) throw InputError(options.output, error.data());
   const bool empty = trace.EventCount() == 0;
   WriteOut((empty ? "The archive holds no events." : plot.headline) + RunningText(trace) + "\n" +
            options.output + "\n");

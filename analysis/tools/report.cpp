@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: MIT
 // stipple report: computes what a report shows; the library that draws it is opened only here.
-#include <fmt/format.h>
-
-#include <array>
 #include <filesystem>
 
 #include "analysis/report/report_input.h"
@@ -11,14 +8,11 @@
 #include "analysis/tools/options.h"
 #include "analysis/tools/progress.h"
 #include "analysis/tools/views_library.h"
-#include "analysis/trace/input_error.h"
 
 namespace stipple {
 namespace {
 
 constexpr std::size_t kColumns = 1000;
-
-using DrawFunction = decltype(&stipple_draw_report);
 
 }  // namespace
 
@@ -33,18 +27,15 @@ int RunReport(const Arguments& arguments) {
   if (!app.Parse(arguments)) return 0;
   while (archive.size() > 1 && archive.back() == '/') archive.pop_back();
   if (output.empty()) output = std::filesystem::path(archive).stem().string() + ".html";
-  const auto draw =
-      reinterpret_cast<DrawFunction>(FunctionOfViews("stipple report", "stipple_draw_report"));
+  const Drawer<ReportInput> draw("stipple report", "stipple_draw_report");
   ProgressLine progress;
   const Trace trace = Trace::Open(archive, progress.meter());
   const Analysis analysis(trace);
   ReportInput input = ReportInputOf(analysis, kColumns);
   input.mono = mono;
   trace.BeginPhase("drawing the page", 0);
-  std::array<char, 1024> error{};
-  const int failed = draw(&input, output.c_str(), error.data(), error.size());
+  draw(input, output);
   progress.Stop();
-  if (failed != 0) throw InputError(output, error.data());
   std::string text = input.finding.sentence + "\n";
   if (!input.finding.detail.empty()) text += input.finding.detail + "\n";
   WriteOut(text + output + "\n");

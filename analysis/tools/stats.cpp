@@ -81,9 +81,11 @@ int RunStats(const Arguments& arguments) {
   const Team team = Team::OfEnvironment();
   const bool together =
       team.size > 1 && trace.index() == nullptr && !trace.header_health().Running();
-  if (together && team.rank != 0) LeaveShare(trace, team);
+  const bool with_paths = entry.needs_paths && selection.WholeTime();
+  if (together && team.rank != 0) LeaveShare(trace, team, with_paths);
   if (team.rank != 0) return 0;
-  const Analysis analysis = together ? Analysis(trace, ScanTogether(trace, team)) : Analysis(trace);
+  const Analysis analysis =
+      together ? Analysis(trace, ScanTogether(trace, team, with_paths)) : Analysis(trace);
   const TableAnswer answer = entry.make(analysis, selection, {per_rank, window_ns});
   progress.Stop();
   const std::string nothing = NothingText(trace, selection);

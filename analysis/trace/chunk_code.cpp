@@ -14,7 +14,7 @@ namespace {
 constexpr int kLevel = 3;
 constexpr std::uint32_t kWideIndex = 255;  // the region itself follows, three bytes
 constexpr std::size_t kRegionBytes = 3;
-constexpr std::size_t kSlack = 8;  // a distance is read as eight bytes
+constexpr std::ptrdiff_t kBatch = 1024;  // operations whose columns are checked together
 
 /// High bits of an operation; the low three are the bytes of the event's distance in time, 0: its
 /// clock was not read.
@@ -30,6 +30,8 @@ enum class Operation : std::uint8_t {
 constexpr int kOperationShift = 3;
 constexpr std::uint32_t kLengthMask = 7;
 constexpr std::uint32_t kMostLength = 5;
+/// Behind the columns, for a batch that is longer than they are; a distance is read as eight bytes.
+constexpr std::size_t kSlack = kBatch * kLengthMask + sizeof(std::uint64_t);
 
 /// First bytes of what zstd gets; then the table of regions, the wide words, operations, distances
 /// and regions.
@@ -211,6 +213,31 @@ CodedChunk ChunkCoder::Code(std::span<const EventWord> words) {
   return coded;
 }
 
+namespace {
+
+/// What the operation of an event says, as masks.
+struct EventOperation {
+  std::uint64_t distance;  // of eight bytes, those that are
+  std::uint64_t time;      // 0: no clock
+  std::uint32_t leaves;
+  std::uint32_t names;
+  std::uint32_t length;
+};
+constexpr auto kEventOperations = [] {
+  std::array<EventOperation, static_cast<std::size_t>(Operation::kZero) << kOperationShift> all{};
+  for (std::uint32_t byte = 0; byte < all.size(); ++byte) {
+    const auto operation = static_cast<Operation>(byte >> kOperationShift);
+    const std::uint32_t length = byte & kLengthMask;
+    const bool leave = operation == Operation::kLeaveTop || operation == Operation::kLeave;
+    all[byte] = {length > kMostLength ? 0 : (std::uint64_t{1} << (8 * length)) - 1,
+                 length == 0 ? 0 : ~std::uint64_t{0}, leave ? ~std::uint32_t{0} : 0,
+                 operation >= Operation::kLeave ? ~std::uint32_t{0} : 0, length};
+  }
+  return all;
+}();
+
+}  // namespace
+
 struct ChunkDecoder::State {
   ZSTD_DCtx* zstd = ZSTD_createDCtx();
   CallMemory memory;
@@ -262,7 +289,7 @@ struct ChunkDecoder::State {
 
   /// False: there is none.
   bool Region(std::uint32_t& region) {
-    if (regions == regions_end) return false;
+    if (regions >= regions_end) return false;
     const auto index = static_cast<unsigned char>(*regions++);
     region = table[index];
     if (index == kWideIndex) {
@@ -297,8 +324,6 @@ ChunkDecoder& ChunkDecoder::operator=(ChunkDecoder&&) noexcept = default;
 ChunkDecoder::~ChunkDecoder() = default;
 
 bool ChunkDecoder::Decode(std::span<const std::byte> frame, std::span<EventWord> words) {
-  constexpr std::array<std::uint64_t, 8> kMasks = {0,          0xff,         0xffff, 0xffffff,
-                                                   0xffffffff, 0xffffffffff, 0,      0};
   State& s = *state_;
   if (words.size() > kMostCompactedWords || !s.Open(frame, words.size())) return false;
   std::uint64_t now = 0;
@@ -307,49 +332,49 @@ bool ChunkDecoder::Decode(std::span<const std::byte> frame, std::span<EventWord>
   CallModel model = s.memory.Begin(words.size());
   const char* distance = s.distances;
   const char* regions = s.regions;
-  const char* const distances_end = s.distances_end;
-  const char* const operations_end = s.operations_end;
-  for (const char* at = s.operations; at != operations_end; ++at) {
-    const auto byte = static_cast<unsigned char>(*at);
-    const auto operation = static_cast<Operation>(byte >> kOperationShift);
-    const std::uint32_t length = byte & kLengthMask;
-    if (to == end) return false;
-    if (operation >= Operation::kZero) [[unlikely]] {
-      const std::uint64_t made = s.Other(operation, to, static_cast<std::uint64_t>(end - to), now);
-      if (made == 0) return false;
-      if (operation == Operation::kRecord && HasTicks(*to)) now = to[1];
-      if (operation == Operation::kRecord && IsEnter(*to)) model.Enter(EnteredBy(to));
-      to += made;
-      continue;
-    }
-    if (length > static_cast<std::size_t>(distances_end - distance)) return false;
-    std::uint64_t more = 0;
-    std::memcpy(&more, distance, sizeof(more));
-    distance += length;
-    now += more & kMasks[length];
-    const bool leave = operation == Operation::kLeaveTop || operation == Operation::kLeave;
-    const bool is_named = operation >= Operation::kLeave;
-    std::uint32_t region = 0;
-    // With the slack there is a byte, even behind the last region.
-    const std::uint32_t named = s.table[static_cast<unsigned char>(*regions)];
-    const bool is_odd = (is_named & ((named >= kKindBase) | (regions == s.regions_end))) |
-                        (leave & (is_named | (model.depth() == 0)));
-    if (is_odd) [[unlikely]] {
-      s.regions = regions;
-      if (!is_named || !s.Region(region)) return false;
-      regions = s.regions;
-      if (leave) {
-        model.Leave(region);
+  const char* at = s.operations;
+  while (at != s.operations_end) {
+    const char* const stop = at + std::min({s.operations_end - at, end - to, kBatch});
+    if (at == stop) return false;
+    for (; at != stop; ++at) {
+      const auto byte = static_cast<unsigned char>(*at);
+      if (byte >= kEventOperations.size()) [[unlikely]]
+        break;
+      const EventOperation& operation = kEventOperations[byte];
+      std::uint64_t more = 0;
+      std::memcpy(&more, distance, sizeof(more));
+      distance += operation.length;
+      now += more & operation.distance;
+      std::uint32_t region = 0;
+      // With the slack there is a byte, even behind the last region.
+      const std::uint32_t named = s.table[static_cast<unsigned char>(*regions)] & operation.names;
+      const bool is_odd = (named >= kKindBase) | ((operation.leaves & operation.names) != 0) |
+                          ((operation.leaves != 0) & (model.depth() == 0));
+      if (is_odd) [[unlikely]] {
+        s.regions = regions;
+        if (operation.names == 0 || !s.Region(region)) return false;
+        regions = s.regions;
+        if (operation.leaves != 0) {
+          model.Leave(region);
+        } else {
+          model.Guess() = region;
+          model.Enter(region);
+        }
       } else {
-        model.Guess() = region;
-        model.Enter(region);
+        regions += operation.names & 1;
+        region = model.Step(operation.leaves, operation.names, named);
       }
-    } else {
-      regions += is_named ? 1 : 0;
-      region = model.Step(leave, is_named, named);
+      *to++ = (now & operation.time) << kTimeShift | (operation.leaves & kLeaveBit) | region;
     }
-    const std::uint64_t time = now & (0 - static_cast<std::uint64_t>(length != 0));
-    *to++ = MakeEvent(time, leave, RegionId{region});
+    if (distance > s.distances_end || regions > s.regions_end) return false;
+    if (at == stop) continue;
+    const auto operation =
+        static_cast<Operation>(static_cast<unsigned char>(*at++) >> kOperationShift);
+    const std::uint64_t made = s.Other(operation, to, static_cast<std::uint64_t>(end - to), now);
+    if (made == 0) return false;
+    if (operation == Operation::kRecord && HasTicks(*to)) now = to[1];
+    if (operation == Operation::kRecord && IsEnter(*to)) model.Enter(EnteredBy(to));
+    to += made;
   }
   std::fill(to, end, 0);
   return true;

@@ -49,19 +49,18 @@ class CallModel {
     last_child_ = region;
   }
   /// Leaves the top, which there is, or enters `named`, if it is, or else what was guessed; the
-  /// region. Without a branch, for nobody can foretell which of these comes.
-  std::uint32_t Step(bool leave, bool is_named, std::uint32_t named) {
-    // Masks: of a choice between two values the compiler may make a branch after all.
-    const std::uint32_t leaves = 0 - static_cast<std::uint32_t>(leave);
-    const std::uint32_t names = 0 - static_cast<std::uint32_t>(is_named);
+  /// region. `leaves` and `names` are masks, all ones or 0, and so is `named` where it is not.
+  /// Without a branch, for nobody can foretell which of these comes: of a choice between two values
+  /// the compiler may make one after all.
+  std::uint32_t Step(std::uint32_t leaves, std::uint32_t names, std::uint32_t named) {
     const std::uint32_t below = open_[static_cast<std::ptrdiff_t>(depth_) - 1];
     std::uint32_t& guess = Guess();
-    const std::uint32_t entered = (guess & ~names) | (named & names);  // `names` is 0 at a leave
+    const std::uint32_t entered = (guess & ~names) | named;  // `names` is 0 at a leave
     const std::uint32_t region = (entered & ~leaves) | (top_ & leaves);
     guess = entered;
     top_ = (entered & ~leaves) | (below & leaves);
     last_child_ = region & leaves;
-    depth_ += 1 - 2 * static_cast<std::size_t>(leave);
+    depth_ += 1 - 2 * static_cast<std::size_t>(leaves & 1);
     open_[depth_] = top_;
     return region;
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "analysis/trace/chunks.h"
 #include "analysis/trace/scan.h"
 
 namespace stipple {
@@ -79,6 +80,7 @@ void MendSteps(ThreadStream& thread, Stream& stream) {
   for (Chunk& chunk : thread.chunks) {
     if (!first) {
       first = StepOf(chunk);
+      ReleaseChunk(stream, chunk);  // a look at its begin has brought what is around
       // A clock that ran ahead is only told of: times stay in order.
       if (first && first->ticks >= first->before_ticks) return;
     }

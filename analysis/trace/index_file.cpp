@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::uint64_t kMagic = 0x7864'6e69'7074'7300;  // "\0stpindx"
 // Another number whenever a section means something else, or something is computed otherwise.
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr std::uint64_t kAlign = 64;
 constexpr std::uint64_t kMostEntries = 1 << 20;
 constexpr std::uint64_t kPieceBytes = 1 << 20;

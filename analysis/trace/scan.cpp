@@ -78,6 +78,7 @@ const EventWord* PlainEnd(const EventWord* word, const EventWord* stop,
                           std::uint64_t region_count) {
   for (; stop - word >= kGroup; word += kGroup) {
     std::uint64_t odd = 0;
+    for (std::ptrdiff_t i = 0; i < kGroup; i += 8) __builtin_prefetch(word + kMostPlain + i);
     for (std::ptrdiff_t i = 0; i < kGroup; ++i) odd |= OddBits(word + i, region_count);
     if ((odd & kOdd) != 0) break;
   }

@@ -387,8 +387,11 @@ std::vector<int> Trace::RanksInOrder() const {
 }
 
 bool Trace::IsHost(int rank) const {
-  return std::ranges::any_of(processes_,
-                             [rank](const Process& p) { return p.rank == rank && p.is_host; });
+  const auto is_host = [rank](const Process& p) { return p.rank == rank && p.is_host; };
+  // Asked for each message: locations are in order of ranks, and few of a rank.
+  const auto [first, last] = std::ranges::equal_range(locations_, rank, {}, &Location::rank);
+  if (first == last) return std::ranges::any_of(processes_, is_host);
+  return std::any_of(first, last, [&](const Location& l) { return is_host(ProcessOf(l)); });
 }
 
 bool Trace::HasHost() const { return std::ranges::any_of(processes_, &Process::is_host); }

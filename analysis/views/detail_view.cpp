@@ -8,6 +8,7 @@
 
 #include "analysis/stats/number.h"
 #include "analysis/views/layout.h"
+#include "analysis/views/mark_groups.h"
 #include "analysis/views/palette.h"
 #include "analysis/views/state_runs.h"
 #include "analysis/views/text.h"
@@ -18,8 +19,6 @@ namespace stipple {
 namespace {
 
 constexpr std::size_t kMostLines = 400;  // beyond that lines hide the states
-constexpr double kMarkSize = 11;
-constexpr double kMarkSpacing = 12;  // marks nearer than this become one numeral
 constexpr double kLeastPitchForMarks = 24;
 constexpr double kTop = 18;
 constexpr double kStripHeight = 40;  // of the message load, where there are too many for lines
@@ -31,11 +30,6 @@ RowGridLimits DetailLimits(std::size_t rows) {
     limits.fill = 0.74;  // no room is kept for marks
   return limits;
 }
-
-struct EventMark {
-  double x;
-  char letter;  // 's' or 'r'
-};
 
 /// Marks per drawn row, in the order of time.
 std::vector<std::vector<EventMark>> MarksByRow(const Timeline& detail, const RowGrid& grid,
@@ -56,22 +50,14 @@ std::vector<std::vector<EventMark>> MarksByRow(const Timeline& detail, const Row
 /// Lines arrive from the left and leave to the right: letters stand beside them.
 double Aside(char letter) { return letter == 'r' ? 3 : -2; }
 
-/// Letters where they stand alone, else how many there are; what a numeral would touch joins it.
 void AddMarks(Layer& layer, const std::vector<EventMark>& marks, double y) {
-  for (std::size_t i = 0; i < marks.size();) {
-    std::size_t count = 1;
-    double x = marks[i].x, reach = x + kMarkSpacing;
-    std::string text(1, marks[i].letter);
-    while (i + count < marks.size() && marks[i + count].x < reach) {
-      ++count;
-      text = FormatShort(static_cast<double>(count));
-      x = (marks[i].x + marks[i + count - 1].x) / 2;
-      reach = std::max(reach, x + TextWidth(text, kMarkSize, true) / 2 + kMarkSpacing);
-    }
-    if (count == 1) x += Aside(marks[i].letter);
-    layer.shapes.emplace_back(TextShape{
-        x, y, text, {.size = kMarkSize, .colour = kInk, .bold = true, .anchor = Anchor::kMiddle}});
-    i += count;
+  for (const MarkGroup& group : GroupMarks(marks)) {
+    const double x = group.x + (group.count == 1 ? Aside(marks[group.first].letter) : 0);
+    layer.shapes.emplace_back(
+        TextShape{x,
+                  y,
+                  group.text,
+                  {.size = kMarkSize, .colour = kInk, .bold = true, .anchor = Anchor::kMiddle}});
   }
 }
 
@@ -189,6 +175,8 @@ Scene DetailScene(const ViewInput& input, double width) {
       fmt::format("States of each {} with {} messages as lines from sender to receiver.",
                   NounFor(detail), FormatCount(static_cast<std::int64_t>(detail.message_count)));
   scene.note = NoteFor(detail, marks);
+  if (const std::string left_out = LeftOutText(depths); !left_out.empty())
+    scene.note += (scene.note.empty() ? "" : " \u00b7 ") + left_out;
   scene.layers.push_back(
       StateLayer(MakeStateRuns(detail, grid, axis.width(), kQuadBudget), grid, axis));
   if (depths.count > 0) AddVisitLayers(scene, input, grid, axis, depths);

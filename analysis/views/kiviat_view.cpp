@@ -20,9 +20,9 @@ namespace stipple {
 namespace {
 
 constexpr double kWidth = 680, kHeight = 560, kRadius = 220;
-constexpr std::size_t kMostAxes = 128;   // beyond that neighbours share one
-constexpr std::size_t kMostSpokes = 64;  // more lines would be a grey disc
-constexpr std::size_t kMostPolygons = 4;
+constexpr std::size_t kMostAxes = 128;    // beyond that neighbours share one
+constexpr std::size_t kMostSpokes = 64;   // more lines would be a grey disc
+constexpr std::size_t kMostPolygons = 5;  // as many lines as there are colours to tell apart
 constexpr double kLabel = 12, kRingLabel = 11;
 constexpr Point kCentre{kWidth / 2, kHeight / 2};
 

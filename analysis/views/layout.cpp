@@ -52,6 +52,11 @@ std::string_view NounFor(const Timeline& timeline) {
   return HasHost(timeline.rows) ? "node" : "rank";
 }
 
+int HostOf(const Timeline& timeline) {
+  const auto host = std::ranges::find(timeline.rows, true, &TimelineRow::is_host);
+  return host == timeline.rows.end() ? -1 : host->rank;
+}
+
 RowGrid MainGrid(const ViewInput& input) {
   if (!HasRows(input.timeline)) return {};
   RowGridLimits limits;

@@ -39,6 +39,8 @@ Scene DetailScene(const ViewInput& input, double width);
 
 /// "node" where there is a host, else "rank".
 std::string_view NounFor(const Timeline& timeline);
+/// World rank of the host; -1: there is none.
+int HostOf(const Timeline& timeline);
 
 }  // namespace stipple
 

@@ -44,7 +44,7 @@ std::string NumberText(double value) {
 Quantity QuantityOf(std::string_view column) {
   if (column.ends_with("bytes_per_s")) return Quantity::kByteRate;
   if (column.ends_with("_per_s")) return Quantity::kCountRate;
-  if (column.ends_with("_s") || column == "seconds") return Quantity::kSeconds;
+  if (column.ends_with("_s") || column == "seconds" || column == "wait") return Quantity::kSeconds;
   if (column.ends_with("bytes") || column == "volume" || column == "low" || column == "high" ||
       column == "mean-size" || column == "mean_size")
     return Quantity::kBytes;

@@ -93,12 +93,15 @@ struct Reader {
     const TableColumns columns = ColumnsOf(table);
     if (!columns.rank) return;
     const std::vector<std::size_t> values = AlikeValues(table, columns, input.columns);
-    if (input.columns.empty()) result.left_out += columns.values.size() - values.size();
+    if (input.columns.empty())
+      for (const std::size_t column : columns.values)
+        if (std::ranges::find(values, column) == values.end())
+          result.left_out.push_back(table.columns[column].name);
     const double moment = columns.time ? MomentOf(table, columns, input.at_s) : 0;
     if (columns.time && !std::isnan(moment)) result.time_s = moment;
     for (const std::size_t column : values) {
       if (result.columns.size() >= most) {
-        ++result.left_out;
+        result.left_out.push_back(table.columns[column].name);
         continue;
       }
       ByName sums;
@@ -158,7 +161,7 @@ RankTable RankTableOf(const ViewInput& input, std::size_t most_columns) {
     else if (reader.result.columns.size() < most_columns)
       reader.ReadMatrix(*table);
     else
-      ++reader.result.left_out;
+      reader.result.left_out.push_back(table->name);
   }
   return reader.Finished();
 }
@@ -263,8 +266,14 @@ void AddScaleNotes(Scene& scene, const RankTable& table) {
   for (const RankColumn& column : table.columns)
     if (column.quantity != table.columns.front().quantity)
       add(fmt::format("{}: at most {}", column.label, ValueText(column.quantity, column.largest)));
-  if (table.left_out > 0)
-    add(fmt::format("not shown: {} column{}", table.left_out, table.left_out == 1 ? "" : "s"));
+  if (table.left_out.empty()) return;
+  constexpr std::size_t kNamed = 3;
+  std::string names;
+  for (std::size_t i = 0; i < std::min(table.left_out.size(), kNamed); ++i)
+    names += (i == 0 ? "" : ", ") + WordsFor(table.left_out[i]);
+  if (table.left_out.size() > kNamed)
+    names += fmt::format(" and {} more", table.left_out.size() - kNamed);
+  add("not shown: " + names);
 }
 
 }  // namespace stipple

@@ -28,9 +28,9 @@ struct RankColumn {
 struct RankTable {
   std::vector<TimelineRow> ranks;  // names only; the host is last
   std::vector<RankColumn> columns;
-  std::optional<double> time_s;     // of the values, where they change over time
-  std::vector<std::string> tables;  // their names
-  std::size_t left_out = 0;         // columns that count something else than the first
+  std::optional<double> time_s;       // of the values, where they change over time
+  std::vector<std::string> tables;    // their names
+  std::vector<std::string> left_out;  // columns that count something else, or are too many
   bool has_host() const;
 };
 

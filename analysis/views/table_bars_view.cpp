@@ -47,9 +47,13 @@ RankTable NamedRows(const ViewInput& input) {
   // Of times that hold one another the part that is a row's alone.
   const std::optional<std::size_t> alone = ColumnNamed(table, "exclusive_s");
   if (alone && input.columns.empty()) values = {*alone};
-  if (input.columns.empty()) result.left_out = columns.values.size() - values.size();
+  if (input.columns.empty())
+    for (const std::size_t column : columns.values)
+      if (std::ranges::find(values, column) == values.end())
+        result.left_out.push_back(table.columns[column].name);
   if (values.size() > kMostBars) {
-    result.left_out += values.size() - kMostBars;
+    for (std::size_t i = kMostBars; i < values.size(); ++i)
+      result.left_out.push_back(table.columns[values[i]].name);
     values.resize(kMostBars);
   }
   if (values.empty()) return result;

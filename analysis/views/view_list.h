@@ -78,6 +78,8 @@ Scene MessageLoadView(const ViewInput& input);
 Scene DetailView(const ViewInput& input);
 Scene MessageMatrixView(const ViewInput& input);
 Scene VolumeMatrixView(const ViewInput& input);
+/// Of the first table, which holds phases.
+Scene PhaseBarsView(const ViewInput& input);
 
 }  // namespace stipple
 

@@ -51,7 +51,8 @@ Colour ColourOfName(std::string_view name) {
 VisitDepths VisitDepthsOf(const ViewInput& input) {
   if (input.visits == nullptr || !HasRows(input.detail)) return {};
   const std::size_t rows = input.visits->rows.size();
-  if (rows != input.detail->rows.size() || rows > kMostRows) return {};
+  if (rows != input.detail->rows.size()) return {};
+  if (rows > kMostRows) return {.too_many_rows = true};
   std::uint32_t unchanged = std::numeric_limits<std::uint32_t>::max(), deepest = 0;
   bool any = false;
   for (const std::vector<VisitBar>& row : input.visits->rows) {
@@ -64,7 +65,8 @@ VisitDepths VisitDepthsOf(const ViewInput& input) {
   const std::uint32_t first = unchanged == 0 ? 0 : unchanged - 1;
   const auto share = static_cast<std::uint32_t>(kMostLines / rows);
   const std::uint32_t most = std::clamp<std::uint32_t>(share, 2, kMostDepths);
-  VisitDepths depths{first, std::min(deepest + 1 - std::min(first, deepest), most), {}};
+  const std::uint32_t all = deepest + 1 - std::min(first, deepest);
+  VisitDepths depths{first, std::min(all, most), {}, all - std::min(all, most), false};
   for (const std::vector<VisitBar>& row : input.visits->rows) {
     std::uint32_t lines = 0;
     for (const VisitBar& visit : row)
@@ -72,6 +74,18 @@ VisitDepths VisitDepthsOf(const ViewInput& input) {
     depths.lines.push_back(std::min(lines, depths.count));
   }
   return depths;
+}
+
+std::string LeftOutText(const VisitDepths& depths) {
+  if (depths.too_many_rows)
+    return fmt::format("functions: of at most {} ranks at a time", kMostRows);
+  std::string text;
+  if (depths.count > 0 && depths.first > 0) text = fmt::format("{} outer", depths.first);
+  if (depths.deeper > 0)
+    text += fmt::format("{}{} deeper", text.empty() ? "" : " and ", depths.deeper);
+  if (text.empty()) return text;
+  const bool one = depths.first + depths.deeper == 1;
+  return text + (one ? " level" : " levels") + " of functions not shown";
 }
 
 void AddVisits(const VisitBars& visits, std::size_t row, const VisitDepths& depths,

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -23,10 +24,16 @@ struct VisitDepths {
   std::uint32_t first = 0;
   std::uint32_t count = 0;             // 0: no visits are drawn
   std::vector<std::uint32_t> lines{};  // of each row
+  std::uint32_t deeper = 0;            // levels below those drawn, where the stack is deepest
+  bool too_many_rows = false;
   double HeightOf(std::size_t row) const {
     return row < lines.size() ? lines[row] * kVisitLine : 0;
   }
 };
+
+/// "2 outer and 5 deeper levels of functions not shown", or that there are too many ranks for
+/// functions; empty where all are shown.
+std::string LeftOutText(const VisitDepths& depths);
 
 /// None where there are no visits or too many rows for them.
 VisitDepths VisitDepthsOf(const ViewInput& input);

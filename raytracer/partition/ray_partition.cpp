@@ -15,15 +15,6 @@ int Begin(int count, int part, int parts) {
   return static_cast<int>(static_cast<long>(count) * part / parts);
 }
 
-std::vector<RasterPoint> PointsIn(const Tile& tile, ImageSize raster) {
-  std::vector<RasterPoint> points;
-  for (int y = tile.y_begin; y < tile.y_end; ++y)
-    for (int x = tile.x_begin; x < tile.x_end; ++x)
-      points.push_back(static_cast<RasterPoint>(y) * static_cast<RasterPoint>(raster.width) +
-                       static_cast<RasterPoint>(x));
-  return points;
-}
-
 /// SplitMix64 (Steele, Lea, Flood, 2014): the same numbers with every standard library.
 class Random {
  public:
@@ -44,6 +35,15 @@ class Random {
 };
 
 }  // namespace
+
+std::vector<RasterPoint> PointsIn(const Tile& tile, ImageSize raster) {
+  std::vector<RasterPoint> points;
+  for (int y = tile.y_begin; y < tile.y_end; ++y)
+    for (int x = tile.x_begin; x < tile.x_end; ++x)
+      points.push_back(static_cast<RasterPoint>(y) * static_cast<RasterPoint>(raster.width) +
+                       static_cast<RasterPoint>(x));
+  return points;
+}
 
 Tile RowsTile(ImageSize raster, int rank, int rank_count) {
   return {0, raster.width, Begin(raster.height, rank, rank_count),

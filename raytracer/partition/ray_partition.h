@@ -42,14 +42,22 @@ std::vector<RasterPoint> BundledPoints(const PartitionChoice& choice, int rank, 
 /// Over all ranks each point of the raster appears exactly once.
 using RayPartition = std::vector<RasterPoint> (*)(const PartitionChoice& choice, int rank,
                                                   int rank_count);
+/// How a rank, if it is not alone, comes by its points.
+enum class Supply {
+  kBeforehand,  // it computes them
+  kHost,        // the last world rank hands them out and traces nothing
+  kCounter      // it takes them itself, by counting up (guided.h)
+};
 struct RayPartitionEntry {
   std::string_view name;
-  RayPartition points;
-  bool host;  // on more than one rank, the last world rank hands out work and traces nothing
+  RayPartition points;  // of kHost and kCounter those of a rank that is alone
+  Supply supply;
 };
-inline constexpr RayPartitionEntry kRayPartitions[] = {{"tiled", TiledPoints, false},
-                                                       {"scattered", ScatteredPoints, false},
-                                                       {"bundles", BundledPoints, true}};
+inline constexpr RayPartitionEntry kRayPartitions[] = {
+    {"tiled", TiledPoints, Supply::kBeforehand},
+    {"scattered", ScatteredPoints, Supply::kBeforehand},
+    {"bundles", BundledPoints, Supply::kHost},
+    {"guided", ScatteredPoints, Supply::kCounter}};
 
 /// The shape of a tile: the part of a raster that belongs to `rank`.
 struct Tile {
@@ -64,6 +72,8 @@ Tile ColumnsTile(ImageSize raster, int rank, int rank_count);
 Tile BlocksTile(ImageSize raster, int rank, int rank_count);
 inline constexpr TileEntry kTiles[] = {
     {"rows", RowsTile}, {"columns", ColumnsTile}, {"blocks", BlocksTile}};
+/// Row by row.
+std::vector<RasterPoint> PointsIn(const Tile& tile, ImageSize raster);
 
 /// How the points of bundles are chosen; row of the table by name.
 struct SelectionEntry {

@@ -26,6 +26,9 @@ CounterRow counter_rows[] = {
     {{"refracted rays", "rays", 0}, [](const RayCounts& c) { return c.refracted_rays; }}};
 
 stipple_name bundles_left = {"bundles left", "bundles", 0};
+stipple_name rays_waiting = {"rays waiting", "rays", 0};
+stipple_name rays_received = {"rays received", "rays", 0};
+stipple_name rays_sent = {"rays sent", "rays", 0};
 
 }  // namespace
 
@@ -39,5 +42,11 @@ void RecordCounts(const RayCounts& counts) {
 }
 
 void RecordBundlesLeft(std::uint32_t bundles) { stipple_counter(&bundles_left, bundles); }
+
+void RecordTravel(std::size_t waiting, std::uint64_t received, std::uint64_t sent) {
+  stipple_counter(&rays_waiting, static_cast<double>(waiting));
+  stipple_counter(&rays_received, static_cast<double>(received));
+  stipple_counter(&rays_sent, static_cast<double>(sent));
+}
 
 }  // namespace stipple::raytracer

@@ -3,6 +3,7 @@
 #ifndef STIPPLE_RAYTRACER_RENDER_MARKS_H
 #define STIPPLE_RAYTRACER_RENDER_MARKS_H
 
+#include <cstddef>
 #include <cstdint>
 
 #include "raytracer/render/tracer.h"
@@ -30,6 +31,10 @@ void RecordCounts(const RayCounts& counts);
 
 /// Records, on the host, how many bundles are still to be handed out.
 void RecordBundlesLeft(std::uint32_t bundles);
+
+/// Records, after each package of rays, how many wait on this rank, and how many it has ever
+/// received and sent.
+void RecordTravel(std::size_t waiting, std::uint64_t received, std::uint64_t sent);
 
 }  // namespace stipple::raytracer
 

@@ -15,15 +15,35 @@
 
 namespace stipple::raytracer {
 
-/// The media around a point, by material; air if there is none. More than `kMost` inside each other
-/// are forgotten: the outermost counts as air.
+inline constexpr std::size_t kMostMedia = 8;
+
+/// The same by number of material, for messages.
+struct PackedMedia {
+  std::array<std::uint32_t, kMostMedia> inside{};
+  std::uint32_t count = 0;
+};
+
+/// The media around a point, by material; air if there is none. More than `kMostMedia` inside each
+/// other are forgotten: the outermost counts as air.
 template <class Real>
 class Media {
  public:
   using Material = ShadedMaterial<Real>;
 
+  Media() = default;
+  Media(const PackedMedia& packed, const Material* materials) : count_(packed.count) {
+    for (std::size_t i = 0; i < count_; ++i) inside_[i] = materials + packed.inside[i];
+  }
+  PackedMedia Packed(const Material* materials) const {
+    PackedMedia packed;
+    for (std::size_t i = 0; i < count_; ++i)
+      packed.inside[i] = static_cast<std::uint32_t>(inside_[i] - materials);
+    packed.count = static_cast<std::uint32_t>(count_);
+    return packed;
+  }
+
   void Enter(const Material& medium) {
-    if (count_ == kMost) {
+    if (count_ == kMostMedia) {
       std::move(inside_.begin() + 1, inside_.end(), inside_.begin());
       --count_;
     }
@@ -59,9 +79,7 @@ class Media {
   }
 
  private:
-  static constexpr std::size_t kMost = 8;
-
-  std::array<const Material*, kMost> inside_{};
+  std::array<const Material*, kMostMedia> inside_{};
   std::size_t count_ = 0;
 };
 

@@ -27,20 +27,43 @@ double MeanOf(std::int64_t sum, std::int64_t rays) {
   return static_cast<double>(sum) / (static_cast<double>(kFixedOne) * static_cast<double>(rays));
 }
 
-/// All rays of each pixel: those of its point, or of its four corners.
-std::vector<RayResult> PixelsOf(const Raster& raster, ImageSize image, Samples samples) {
+/// Tells `use` all rays of each pixel: those of its point, or of its four corners. A pixel at a
+/// time: all of them would be as large as the raster.
+template <class Use>
+void ForEachPixel(const Raster& raster, ImageSize image, Samples samples, Use use) {
   const int width = RasterOf(image, samples).width;
   const int reach = samples.corners() ? 1 : 0;
-  std::vector<RayResult> pixels;
-  pixels.reserve(Index(0, image.height, image.width));
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
       RayResult pixel;
       for (int dy = 0; dy <= reach; ++dy)
         for (int dx = 0; dx <= reach; ++dx) Add(raster[Index(x + dx, y + dy, width)], pixel);
-      pixels.push_back(pixel);
+      use(pixel);
     }
-  return pixels;
+}
+
+void Bound(const RayResult& pixel, double pixels, LossBound& bound) {
+  // What makes a component brighter than white is not seen.
+  const std::int64_t darkest = std::min({pixel.color.red, pixel.color.green, pixel.color.blue});
+  const double room = 1 - std::clamp(MeanOf(darkest, pixel.rays), 0.0, 1.0);
+  const double lost = std::min(MeanOf(pixel.lost, pixel.rays), room);
+  bound.mean += lost / pixels;
+  bound.worst = std::max(bound.worst, lost);
+}
+
+/// A picture whose components are `component(sum, rays)`.
+template <class Pixels, class Component>
+Bounded<Pixels> Develop(const Raster& raster, ImageSize image, Samples samples,
+                        Component component) {
+  Bounded<Pixels> made{{image, {}}, {}};
+  const std::size_t pixels = Index(0, image.height, image.width);
+  made.picture.rgb.reserve(3 * pixels);
+  ForEachPixel(raster, image, samples, [&](const RayResult& pixel) {
+    for (const std::int64_t sum : {pixel.color.red, pixel.color.green, pixel.color.blue})
+      made.picture.rgb.push_back(component(sum, pixel.rays));
+    Bound(pixel, static_cast<double>(pixels), made.loss);
+  });
+  return made;
 }
 
 struct PixelCost {
@@ -70,35 +93,21 @@ std::vector<PixelCost> CostsOf(const Raster& raster, ImageSize image, Samples sa
 
 }  // namespace
 
-Image PictureOf(const Raster& raster, ImageSize image, Samples samples) {
-  Image picture{image, {}};
-  picture.rgb.reserve(3 * Index(0, image.height, image.width));
-  for (const RayResult& pixel : PixelsOf(raster, image, samples))
-    for (const std::int64_t sum : {pixel.color.red, pixel.color.green, pixel.color.blue})
-      picture.rgb.push_back(ToByte(sum, pixel.rays));
-  return picture;
+Bounded<Image> PictureOf(const Raster& raster, ImageSize image, Samples samples) {
+  return Develop<Image>(raster, image, samples, ToByte);
 }
 
-LinearImage LinearPictureOf(const Raster& raster, ImageSize image, Samples samples) {
-  LinearImage picture{image, {}};
-  picture.rgb.reserve(3 * Index(0, image.height, image.width));
-  for (const RayResult& pixel : PixelsOf(raster, image, samples))
-    for (const std::int64_t sum : {pixel.color.red, pixel.color.green, pixel.color.blue})
-      picture.rgb.push_back(static_cast<float>(MeanOf(sum, pixel.rays)));
-  return picture;
+Bounded<LinearImage> LinearPictureOf(const Raster& raster, ImageSize image, Samples samples) {
+  return Develop<LinearImage>(raster, image, samples, [](std::int64_t sum, std::int64_t rays) {
+    return static_cast<float>(MeanOf(sum, rays));
+  });
 }
 
 LossBound LossOf(const Raster& raster, ImageSize image, Samples samples) {
   LossBound bound;
-  const std::vector<RayResult> pixels = PixelsOf(raster, image, samples);
-  for (const RayResult& pixel : pixels) {
-    // What makes a component brighter than white is not seen.
-    const std::int64_t darkest = std::min({pixel.color.red, pixel.color.green, pixel.color.blue});
-    const double room = 1 - std::clamp(MeanOf(darkest, pixel.rays), 0.0, 1.0);
-    const double lost = std::min(MeanOf(pixel.lost, pixel.rays), room);
-    bound.mean += lost / static_cast<double>(pixels.size());
-    bound.worst = std::max(bound.worst, lost);
-  }
+  const auto pixels = static_cast<double>(Index(0, image.height, image.width));
+  ForEachPixel(raster, image, samples,
+               [&](const RayResult& pixel) { Bound(pixel, pixels, bound); });
   return bound;
 }
 

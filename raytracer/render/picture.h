@@ -10,18 +10,27 @@
 
 namespace stipple::raytracer {
 
-/// The mean of the rays of each pixel, in integers throughout.
-Image PictureOf(const Raster& raster, ImageSize image, Samples samples);
-
-/// The same means, not limited to what a byte can hold.
-LinearImage LinearPictureOf(const Raster& raster, ImageSize image, Samples samples);
-
 /// How much brighter a component of a pixel could be, of 1, if every ray had been followed to depth
 /// kDeepest and none been cut.
 struct LossBound {
   double mean = 0;   // over the pixels
   double worst = 0;  // of any pixel
 };
+
+/// A picture and, of the same pass over the raster, what it lacks at most.
+template <class Pixels>
+struct Bounded {
+  Pixels picture;
+  LossBound loss;
+};
+
+/// The mean of the rays of each pixel, in integers throughout.
+Bounded<Image> PictureOf(const Raster& raster, ImageSize image, Samples samples);
+
+/// The same means, not limited to what a byte can hold.
+Bounded<LinearImage> LinearPictureOf(const Raster& raster, ImageSize image, Samples samples);
+
+/// Without a picture.
 LossBound LossOf(const Raster& raster, ImageSize image, Samples samples);
 
 /// From dark violet to yellow (viridis) by the root of a pixel's work, yellow for the dearest: in

@@ -49,9 +49,13 @@ constexpr std::size_t kPointsPerRecord =
 }
 
 Rendered RenderRound(const World& world, Sampler& sampler, std::string_view partition,
-                     const PartitionChoice& choice, const Round& round) {
+                     const PartitionChoice& choice, const Round& round,
+                     std::vector<std::uint64_t>& costs) {
   const RayPartitionEntry& row = FindRow(kRayPartitions, partition);
-  if (row.host && world.size > 1) return RenderBundles(world, sampler, choice, round);
+  if (world.size > 1 && row.supply == Supply::kHost)
+    return RenderBundles(world, sampler, choice, round);
+  if (world.size > 1 && row.supply == Supply::kCounter)
+    return RenderGuided(world, sampler, choice, round, costs);
   return RenderShares(world, sampler, row.points, choice, round);
 }
 
@@ -94,7 +98,8 @@ void Place(const std::vector<RasterPoint>& points, const std::vector<RayResult>&
 }
 
 int AssemblingRank(const World& world, std::string_view partition) {
-  return world.has_host || FindRow(kRayPartitions, partition).host ? world.size - 1 : 0;
+  const bool host = world.has_host || FindRow(kRayPartitions, partition).supply == Supply::kHost;
+  return host ? world.size - 1 : 0;
 }
 
 Rendered RenderShares(const World& world, Sampler& sampler, RayPartition partition,
@@ -119,12 +124,13 @@ Rendered RenderShares(const World& world, Sampler& sampler, RayPartition partiti
 Rendered Render(const World& world, Sampler& sampler, std::string_view partition,
                 const PartitionChoice& choice, Samples samples) {
   Mark(Moment::kRenderBegins);
-  Rendered rendered = RenderRound(world, sampler, partition, choice, {});
+  std::vector<std::uint64_t> costs;  // of tiles, where the partition asks for them
+  Rendered rendered = RenderRound(world, sampler, partition, choice, {}, costs);
   Doubling doubling;
   while (samples.adaptive &&
          ChooseDoubling(world, AssemblingRank(world, partition), rendered.raster, choice.raster,
                         samples.tolerance, doubling)) {
-    const Rendered more = RenderRound(world, sampler, partition, choice, Round(doubling));
+    const Rendered more = RenderRound(world, sampler, partition, choice, Round(doubling), costs);
     rendered.messages += more.messages;
     for (std::size_t point = 0; point < more.raster.size(); ++point)
       if (doubling[point] != 0) Add(more.raster[point], rendered.raster[point]);

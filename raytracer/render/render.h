@@ -49,7 +49,7 @@ class Round {
   Doubling doubling_;  // empty: the first round
 };
 
-// The two ways to do one round; Render chooses.
+// The ways to do one round; Render chooses.
 
 /// Every rank knows its points beforehand; rank 0 collects.
 Rendered RenderShares(const World& world, Sampler& sampler, RayPartition partition,
@@ -57,6 +57,11 @@ Rendered RenderShares(const World& world, Sampler& sampler, RayPartition partiti
 /// The last rank hands out bundles on demand and collects; the others trace.
 Rendered RenderBundles(const World& world, Sampler& sampler, const PartitionChoice& choice,
                        const Round& round);
+
+/// Ranks take bundles themselves, the dearest first, from counters that all of them reach; rank 0
+/// collects. `costs`: of each tile; empty in the first round, which finds them.
+Rendered RenderGuided(const World& world, Sampler& sampler, const PartitionChoice& choice,
+                      const Round& round, std::vector<std::uint64_t>& costs);
 
 /// Puts results where their points are.
 void Place(const std::vector<RasterPoint>& points, const std::vector<RayResult>& results,

@@ -24,20 +24,16 @@ int LatticeStep(int count) {
   return best;
 }
 
-struct Offset {
-  double x, y;  // from the point, in columns and rows
-};
-
 /// The lattice (i, 19 i) mod 1, in an order whose first 2^k points are a lattice too: that of i's
 /// bits reversed. Of all generators 19 leaves the widest gaps between points, over 8 to 256 of
 /// them. Small prefixes are a little off the pixel's middle, 8 points by 0.06 of it; with every
 /// other point mirrored about it none is, but 32 and 64 points are worse by 2 to 4 dB. Source: F.
 /// Hickernell et al., "Extensible Lattice Sequences for Quasi-Monte Carlo Quadrature", SIAM J.
 /// Scientific Computing 22(3), 2000.
-std::vector<Offset> ExtensibleLattice() {
+std::vector<SampleOffset> ExtensibleLattice() {
   constexpr unsigned kGenerator = 19;
   const auto place = [](unsigned number) { return (number % kMostRays + 0.5) / kMostRays - 0.5; };
-  std::vector<Offset> offsets;
+  std::vector<SampleOffset> offsets;
   for (unsigned i = 0; i < kMostRays; ++i) {
     unsigned reversed = 0;
     for (unsigned bit = 1; bit < kMostRays; bit *= 2)
@@ -47,13 +43,13 @@ std::vector<Offset> ExtensibleLattice() {
   return offsets;
 }
 
-std::vector<Offset> OffsetsOf(Samples samples) {
+std::vector<SampleOffset> OffsetsOf(Samples samples) {
   if (samples.corners()) return {{0, 0}};
   if (samples.adaptive) return ExtensibleLattice();
   // A rank-1 lattice: for any count, one sample in each of `count` columns and rows of the pixel.
   const int count = samples.per_pixel;
   const int step = LatticeStep(count);
-  std::vector<Offset> offsets;
+  std::vector<SampleOffset> offsets;
   for (int i = 0; i < count; ++i)
     offsets.push_back({(i + 0.5) / count - 0.5, (i * step % count + 0.5) / count - 0.5});
   return offsets;
@@ -63,16 +59,15 @@ template <class Real, Rules kRules>
 class SamplerIn final : public Sampler {
  public:
   SamplerIn(const Scene& scene, Tracer<Real, kRules> tracer, ImageSize image, Samples samples)
-      : raster_(RasterOf(image, samples)),
-        camera_(scene.view, raster_),
+      : eye_rays_(scene.view, RasterOf(image, samples), samples),
         adaptive_(samples.adaptive),
-        offsets_(OffsetsOf(samples)),
         tracer_(std::move(tracer)) {}
 
   RayResult Sample(RasterPoint point) override {
     if (adaptive_) return SampleSquares(point, 0, kFirstRays);
     RayResult result;
-    for (const Offset& offset : offsets_) tracer_.TraceEye(RayAt(point, offset), result);
+    for (std::size_t i = 0; i < eye_rays_.count(); ++i)
+      tracer_.TraceEye(eye_rays_.Through(point, i), result);
     return result;
   }
   RayResult SampleAgain(RasterPoint point, int rays) override {
@@ -81,18 +76,12 @@ class SamplerIn final : public Sampler {
   const RayCounts& counts() const override { return tracer_.counts(); }
 
  private:
-  Ray<Real> RayAt(RasterPoint point, Offset offset) const {
-    const auto width = static_cast<RasterPoint>(raster_.width);
-    return camera_.RayThrough(static_cast<Real>(point % width) + static_cast<Real>(offset.x),
-                              static_cast<Real>(point / width) + static_cast<Real>(offset.y));
-  }
-
   /// Rays `begin` to `end` of a pixel, with the squares of what each of them found.
   RayResult SampleSquares(RasterPoint point, int begin, int end) {
     RayResult result;
     for (int i = begin; i < end; ++i) {
       const FixedColor before = result.color;
-      tracer_.TraceEye(RayAt(point, offsets_[static_cast<std::size_t>(i)]), result);
+      tracer_.TraceEye(eye_rays_.Through(point, static_cast<std::size_t>(i)), result);
       for (const auto component : {&FixedColor::red, &FixedColor::green, &FixedColor::blue}) {
         const double value = static_cast<double>(result.color.*component - before.*component) /
                              static_cast<double>(kFixedOne);
@@ -102,10 +91,8 @@ class SamplerIn final : public Sampler {
     return result;
   }
 
-  ImageSize raster_;
-  Camera<Real> camera_;
+  SampleRays<Real> eye_rays_;
   bool adaptive_;
-  std::vector<Offset> offsets_;
   Tracer<Real, kRules> tracer_;
 };
 
@@ -117,24 +104,25 @@ ImageSize RasterOf(ImageSize image, Samples samples) {
 }
 
 template <class Real>
+SampleRays<Real>::SampleRays(const View& view, ImageSize raster, Samples samples)
+    : width_(static_cast<RasterPoint>(raster.width)),
+      camera_(view, raster),
+      offsets_(OffsetsOf(samples)) {}
+
+template <class Real>
 std::unique_ptr<Sampler> MakeSampler(const Scene& scene, const Model<Real>& model,
                                      const Kernel<Real>& kernel, ShadingChoice shading,
                                      ImageSize image, Samples samples) {
-  const auto make = [&]<Rules kRules>() -> std::unique_ptr<Sampler> {
-    return std::make_unique<SamplerIn<Real, kRules>>(
-        scene, Tracer<Real, kRules>(scene, model, kernel, shading), image, samples);
-  };
-  switch (std::max(shading.at_least, RulesOf(scene))) {
-    case Rules::kOpaque:
-      return make.template operator()<Rules::kOpaque>();
-    case Rules::kTransmitting:
-      return make.template operator()<Rules::kTransmitting>();
-    case Rules::kExtended:
-      break;
-  }
-  return make.template operator()<Rules::kExtended>();
+  return WithRules(
+      std::max(shading.at_least, RulesOf(scene)), [&]<Rules kRules>() -> std::unique_ptr<Sampler> {
+        return std::make_unique<SamplerIn<Real, kRules>>(
+            scene, Tracer<Real, kRules>(scene, model, kernel, shading), image, samples);
+      });
 }
 
+template class SampleRays<float>;
+template class SampleRays<double>;
+template class SampleRays<long double>;
 template std::unique_ptr<Sampler> MakeSampler(const Scene&, const Model<float>&,
                                               const Kernel<float>&, ShadingChoice, ImageSize,
                                               Samples);

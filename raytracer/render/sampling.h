@@ -4,6 +4,7 @@
 #define STIPPLE_RAYTRACER_RENDER_SAMPLING_H
 
 #include <memory>
+#include <vector>
 
 #include "raytracer/partition/ray_partition.h"
 #include "raytracer/render/tracer.h"
@@ -23,6 +24,31 @@ struct Samples {
 
 /// The points that partitions divide: pixels, or the corners of pixels.
 ImageSize RasterOf(ImageSize image, Samples samples);
+
+/// Where a ray goes through, from its point, in columns and rows.
+struct SampleOffset {
+  double x, y;
+};
+
+/// The rays through the points of a raster. Of adaptive sampling all that a point may get.
+template <class Real>
+class SampleRays {
+ public:
+  SampleRays(const View& view, ImageSize raster, Samples samples);
+
+  /// Rays of each point.
+  std::size_t count() const { return offsets_.size(); }
+  Ray<Real> Through(RasterPoint point, std::size_t ray) const {
+    const SampleOffset offset = offsets_[ray];
+    return camera_.RayThrough(static_cast<Real>(point % width_) + static_cast<Real>(offset.x),
+                              static_cast<Real>(point / width_) + static_cast<Real>(offset.y));
+  }
+
+ private:
+  RasterPoint width_;
+  Camera<Real> camera_;
+  std::vector<SampleOffset> offsets_;
+};
 
 /// Traces the points of a raster.
 class Sampler {

@@ -23,6 +23,20 @@ enum class Rules {
 /// The least that `scene` needs.
 Rules RulesOf(const Scene& scene);
 
+/// Calls `make` for these rules, as a template argument.
+template <class Make>
+auto WithRules(Rules rules, Make make) {
+  switch (rules) {
+    case Rules::kOpaque:
+      return make.template operator()<Rules::kOpaque>();
+    case Rules::kTransmitting:
+      return make.template operator()<Rules::kTransmitting>();
+    case Rules::kExtended:
+      break;
+  }
+  return make.template operator()<Rules::kExtended>();
+}
+
 /// Longest chain of rays that any run follows; the deepest picture there is.
 inline constexpr int kDeepest = 64;
 

@@ -20,75 +20,10 @@
 #ifndef STIPPLE_RAYTRACER_RENDER_TRACER_H
 #define STIPPLE_RAYTRACER_RENDER_TRACER_H
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <type_traits>
-
 #include "raytracer/geometry/kernel.h"
-#include "raytracer/render/media.h"
-#include "raytracer/render/shading.h"
-#include "raytracer/scene/scene.h"
+#include "raytracer/render/shader.h"
 
 namespace stipple::raytracer {
-
-struct ShadingChoice {
-  int max_depth = 5;
-  double min_contribution =
-      0;  // rays whose share of the eye ray's colour is smaller are not traced
-  Rules at_least =
-      Rules::kOpaque;  // compiled in even if the scene needs less: to measure its price
-};
-
-struct RayCounts {
-  std::uint64_t eye_rays = 0, eye_hits = 0;
-  std::uint64_t shadow_rays = 0, shadow_hits = 0;
-  std::uint64_t reflected_rays = 0, refracted_rays = 0;
-  TestCounts tests;
-
-  std::uint64_t Rays() const { return eye_rays + shadow_rays + reflected_rays + refracted_rays; }
-  std::uint64_t Work() const { return tests.box_tests + tests.primitive_tests; }
-};
-
-/// A colour in units of 2^-32.
-struct FixedColor {
-  std::int64_t red = 0, green = 0, blue = 0;
-
-  friend bool operator==(const FixedColor&, const FixedColor&) = default;
-};
-inline constexpr std::int64_t kFixedOne = std::int64_t{1} << 32;
-
-/// What the rays through one point of the raster found. It travels in messages as it is.
-struct RayResult {
-  FixedColor color;                  // sum over the rays
-  std::int64_t lost = 0;             // rays not followed could add no more to a component of it
-  std::uint32_t work = 0;            // box and primitive tests
-  std::uint32_t object = kNoObject;  // that the first eye ray hit
-  std::uint16_t rays = 0;            // eye rays
-  std::uint8_t in_shadow = 0;        // 1 if something stands between that hit and a light it faces
-  std::uint8_t depth = 0;            // of the deepest ray
-  std::int64_t squares = 0;          // adaptive sampling: of the rays' components, as `color`
-};
-static_assert(sizeof(RayResult) == 56);
-
-/// What `sum` found and, after that, `more`. Inline: a picture adds a million of them.
-inline void Add(const RayResult& more, RayResult& sum) {
-  if (sum.rays == 0) {
-    sum = more;
-    return;
-  }
-  sum.color.red += more.color.red;
-  sum.color.green += more.color.green;
-  sum.color.blue += more.color.blue;
-  sum.lost += more.lost;
-  sum.squares += more.squares;
-  sum.work += more.work;
-  sum.rays = static_cast<std::uint16_t>(sum.rays + more.rays);
-  sum.depth = std::max(sum.depth, more.depth);
-}
-
-/// In units of 2^-32, rounded.
-std::int64_t ToFixed(double value);
 
 template <class Real, Rules kRules>
 class Tracer {
@@ -100,55 +35,17 @@ class Tracer {
   /// Follows an eye ray and all that come of it, and adds what they find.
   void TraceEye(const Ray<Real>& ray, RayResult& result);
 
-  const RayCounts& counts() const { return counts_; }
+  const RayCounts& counts() const { return shader_.counts(); }
 
  private:
-  static constexpr bool kTransmission = kRules >= Rules::kTransmitting;
-  static constexpr bool kExtensions = kRules == Rules::kExtended;
-
-  using Material = ShadedMaterial<Real>;
-
-  /// A ray and what it carries.
-  struct Leg {
-    Ray<Real> ray;
-    Real throughput;  // share of the eye ray's colour
-    int depth;
-    [[no_unique_address]] std::conditional_t<kExtensions, Media<Real>, OnlyAir> media;
-  };
-
-  /// A place where a ray met an object, ready for shading.
-  struct Surface {
-    Vec<Real> point;
-    Vec<Real> face;      // unit normal of the geometry, towards the ray's origin
-    Vec<Real> normal;    // unit normal for shading, on the same side
-    Vec<Real> mirrored;  // direction of the reflected ray, if the material sends any on
-    Real offset;         // distance that new rays keep from the surface
-    bool leaving;        // the ray came from inside
-    const Material* material;
-
-    /// Where new rays start: a little off the surface, on the side they go to.
-    Vec<Real> Outside() const { return point + face * offset; }
-    Vec<Real> Inside() const { return point - face * offset; }
-  };
+  using Leg = typename Shader<Real, kRules>::Leg;
+  struct Next;
 
   void Trace(const Leg& leg, RayResult& result);
-  bool MeetsLight(const Leg& leg, Real distance, RayResult& result);
-  Surface SurfaceAt(const Ray<Real>& ray, const Hit<Real>& hit) const;
-  Vec<Real> LocalColor(const Surface& surface, bool& in_shadow);
-  void Follow(const Leg& leg, const Surface& surface, RayResult& result);
-  Real Refract(const Leg& leg, const Surface& surface, RayResult& result);
-  Real Bending(const Leg& leg, const Surface& surface) const;
-  bool WorthTracing(Real throughput, int depth, RayResult& result) const;
-  void Lose(Real throughput, int depth, RayResult& result) const;
 
   const Model<Real>& model_;
   const Kernel<Real>& kernel_;
-  Shading<Real> shading_;
-  std::array<double, kDeepest + 1> largest_colors_;
-  int max_depth_;
-  Real min_contribution_;
-  Real rounding_;  // of the kernel's distances
-  RayCounts counts_;
+  Shader<Real, kRules> shader_;
 };
 
 }  // namespace stipple::raytracer

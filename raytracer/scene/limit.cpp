@@ -60,6 +60,12 @@ void CopyObject(const Shapes& from, const Object& object, Shapes& to) {
 
 }  // namespace
 
+Shapes SubsetOf(const Shapes& shapes, std::span<const std::uint32_t> numbers) {
+  Shapes subset;
+  for (const std::uint32_t number : numbers) CopyObject(shapes, shapes.objects[number], subset);
+  return subset;
+}
+
 void LimitObjects(Scene& scene, std::uint64_t limit) {
   const Shapes& all = scene.shapes;
   if (limit >= all.objects.size()) return;
@@ -70,9 +76,7 @@ void LimitObjects(Scene& scene, std::uint64_t limit) {
   });
   order.resize(limit);
   std::ranges::sort(order);
-  Shapes kept;
-  for (const std::uint32_t number : order) CopyObject(all, all.objects[number], kept);
-  scene.shapes = std::move(kept);
+  scene.shapes = SubsetOf(all, order);
 }
 
 }  // namespace stipple::raytracer

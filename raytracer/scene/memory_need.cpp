@@ -16,6 +16,11 @@ namespace {
 /// kind. From above: 8 % more than the peak of tree 18, 54 % more than that of balls 6.
 constexpr std::uint64_t kModelBytes[] = {110, 190, 170, 400, 500};
 
+/// And the shape itself, without its vertices.
+constexpr std::uint64_t kShapeBytes[] = {sizeof(Sphere<double>), sizeof(Cone<double>),
+                                         sizeof(Triangle<double>), sizeof(Polygon<double>),
+                                         sizeof(Patch<double>)};
+
 double Megabytes(std::uint64_t bytes) { return static_cast<double>(bytes) * 1e-6; }
 
 }  // namespace
@@ -45,15 +50,31 @@ std::uint64_t AvailableBytes() {
   return std::numeric_limits<std::uint64_t>::max();
 }
 
-void RequireMemory(const Shapes& shapes, std::uint64_t limit) {
-  const std::uint64_t needed = BytesToBuild(shapes);
-  const std::uint64_t allowed = limit > 0 ? limit : AvailableBytes();
+std::uint64_t BytesToBuild(const Shapes& shapes, std::span<const std::uint32_t> numbers) {
+  std::uint64_t bytes = 0;
+  for (const std::uint32_t number : numbers) {
+    const Object& object = shapes.objects[number];
+    const auto kind = static_cast<std::size_t>(object.kind);
+    bytes += sizeof object + kShapeBytes[kind] + kModelBytes[kind];
+    if (object.kind == ShapeKind::kTriangle) bytes += 2 * 3 * sizeof(Vec3);
+    if (object.kind == ShapeKind::kPolygon)
+      bytes += shapes.polygons[object.index].vertex_count *
+               (3 * sizeof(Vec3) + sizeof(OutlinePoint<double>));
+  }
+  return bytes;
+}
+
+void RequireMemory(std::uint64_t needed, std::uint64_t allowed, const std::string& what) {
   if (needed <= allowed) return;
-  throw UsageError(
-      fmt::format("the scene does not fit: {} objects take up to {:.1f} MB while they are made "
-                  "ready, {} {:.1f} MB",
-                  shapes.objects.size(), Megabytes(needed),
-                  limit > 0 ? "--memory-limit is" : "this node has", Megabytes(allowed)));
+  throw NoRoom(
+      fmt::format("the scene does not fit: {} up to {:.1f} MB while they are made ready, {:.1f} MB "
+                  "are allowed",
+                  what, Megabytes(needed), Megabytes(allowed)));
+}
+
+void RequireMemory(const Shapes& shapes, std::uint64_t limit) {
+  RequireMemory(BytesToBuild(shapes), limit > 0 ? limit : AvailableBytes(),
+                fmt::format("{} objects take", shapes.objects.size()));
 }
 
 }  // namespace stipple::raytracer

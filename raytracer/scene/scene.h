@@ -4,6 +4,7 @@
 #define STIPPLE_RAYTRACER_SCENE_SCENE_H
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "raytracer/geometry/shapes.h"
@@ -48,6 +49,9 @@ struct Scene {
   Shapes shapes;
   PatchChoice patches{};
 };
+
+/// These objects of a scene, as numbers in ascending order say; they are numbered anew.
+Shapes SubsetOf(const Shapes& shapes, std::span<const std::uint32_t> numbers);
 
 /// Keeps `limit` objects: the largest spheres first (objects that are no spheres count as largest),
 /// else the first in the file. Their order stays.

@@ -140,6 +140,7 @@ Traffic Exscan(const Communicator& on, Piece data) {
 
 void RecordCollective(const Visit& visit, const Communicator& on, const Traffic& traffic,
                       uint32_t request) {
+  if (on.id == 0) return;  // a handle that MPI will refuse
   int32_t root = -1;
   if (traffic.root == MPI_ROOT) {
     root = on.rank + on.own_offset;

@@ -16,12 +16,12 @@ namespace {
 constexpr uint32_t kWorldId = 1;
 constexpr uint32_t kSelfId = 2;
 
-constinit HandleTable<Communicator> communicators;
-constinit HandleTable<uint32_t> hashed_creations;  // how often a hash has been seen
+constinit HandleTable<Communicator> communicators;  // by their handles, and windows' and files'
+constinit HandleTable<uint32_t> hashed_creations;   // how often a hash has been seen
 constinit std::atomic<uint32_t> last_id{kSelfId};
 MPI_Group world_group;  // for translating; MPI_Finalize frees it with everything else
 
-std::uint64_t KeyOf(MPI_Comm comm) { return reinterpret_cast<std::uint64_t>(comm); }
+std::uint64_t KeyOf(const void* handle) { return reinterpret_cast<std::uint64_t>(handle); }
 
 std::uint64_t Mix(std::uint64_t hash, std::uint64_t value) {
   hash = (hash ^ value) * 0x9e3779b97f4a7c15u;
@@ -99,8 +99,8 @@ void Write(uint32_t id, const Origin& origin, const int32_t* members, int size) 
                  members, static_cast<std::size_t>(size) * sizeof(int32_t));
 }
 
-/// Defines `comm` under `id` and remembers it.
-Communicator Define(MPI_Comm comm, uint32_t id, Origin origin) {
+/// Defines the ranks of `comm` under `id` and remembers them as those of `handle`.
+Communicator Define(MPI_Comm comm, uint32_t id, Origin origin, const void* handle) {
   const bool between = IsBetween(comm);
   const Groups groups = GroupsOf(comm, between);
   Communicator known = {.id = id,
@@ -129,13 +129,23 @@ Communicator Define(MPI_Comm comm, uint32_t id, Origin origin) {
     Write(id, origin, members.Data(), size);
   }
   FreeGroups(groups);
-  communicators.Put(KeyOf(comm), known);
+  communicators.Put(KeyOf(handle), known);
   return known;
+}
+Communicator Define(MPI_Comm comm, uint32_t id, Origin origin) {
+  return Define(comm, id, origin, comm);
 }
 
 uint32_t NextId() { return last_id.fetch_add(1, std::memory_order_relaxed) + 1; }
 
 bool IsNull(MPI_Comm comm) { return comm == nullptr || comm == predefined.comm_null; }
+
+/// Something is created from `parent` by all of its ranks.
+Origin CountCreation(MPI_Comm parent) {
+  const Communicator from = Find(parent);
+  communicators.Update(KeyOf(parent), [](Communicator& known) { ++known.creations; });
+  return {.parent = from.id, .creation = from.creations, .hashed = false, .tag = 0};
+}
 
 /// By the names that they have in MPI.
 #ifdef STIPPLE_CLASSIC_PMPI
@@ -187,11 +197,19 @@ Communicator Find(MPI_Comm comm) {
 }
 
 void CommunicatorCreated(MPI_Comm parent, MPI_Comm created) {
-  const Communicator from = Find(parent);
-  communicators.Update(KeyOf(parent), [](Communicator& known) { ++known.creations; });
-  if (IsNull(created)) return;
-  Define(created, NextId(),
-         {.parent = from.id, .creation = from.creations, .hashed = false, .tag = 0});
+  const Origin origin = CountCreation(parent);
+  if (!IsNull(created)) Define(created, NextId(), origin);
+}
+
+void SharedCreated(MPI_Comm comm, const void* handle) {
+  if (world.size == 0 || handle == nullptr) return;
+  Define(comm, NextId(), CountCreation(comm), handle);
+}
+
+Communicator FindShared(const void* handle) {
+  Communicator known = {};
+  communicators.Get(KeyOf(handle), &known);
+  return known;
 }
 
 void CommunicatorCreatedByGroup(MPI_Comm parent, int tag, MPI_Comm created) {
@@ -207,15 +225,14 @@ void CommunicatorCreatedBetween(MPI_Comm created) {
   Define(created, NextId(), {.parent = kWorldId, .creation = 0, .hashed = true, .tag = 0});
 }
 
-Communicator Forget(MPI_Comm comm) {
-  Communicator known = {};
-  communicators.Get(KeyOf(comm), &known);
-  communicators.RemoveIf(KeyOf(comm), [](const Communicator&) { return true; });
+Communicator Forget(const void* handle) {
+  const Communicator known = FindShared(handle);
+  communicators.RemoveIf(KeyOf(handle), [](const Communicator&) { return true; });
   return known;
 }
 
-void Remember(MPI_Comm comm, const Communicator& known) {
-  if (known.id != 0) communicators.Put(KeyOf(comm), known);
+void Remember(const void* handle, const Communicator& known) {
+  if (known.id != 0) communicators.Put(KeyOf(handle), known);
 }
 
 }  // namespace stipple::mpi

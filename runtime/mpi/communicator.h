@@ -72,12 +72,19 @@ void CommunicatorCreatedByGroup(MPI_Comm parent, int tag, MPI_Comm created);
 /// `created` joins two groups.
 void CommunicatorCreatedBetween(MPI_Comm created);
 
-/// Forgets `comm` and returns what was known of it. Before the call that frees it: afterwards
-/// another thread may have been given the same handle.
-Communicator Forget(MPI_Comm comm);
+/// A window or file was made by all ranks of `comm`. What they do with it together is counted apart
+/// from what they do on `comm`: it is a communicator of its own, as it is within MPI.
+void SharedCreated(MPI_Comm comm, const void* handle);
+
+/// That of a window or file; id 0 if it came from nowhere.
+Communicator FindShared(const void* handle);
+
+/// Forgets a communicator, window or file and returns what was known of it. Before the call that
+/// frees it: afterwards another thread may have been given the same handle.
+Communicator Forget(const void* handle);
 
 /// Takes a Forget back: the call failed.
-void Remember(MPI_Comm comm, const Communicator& known);
+void Remember(const void* handle, const Communicator& known);
 
 }  // namespace stipple::mpi
 

@@ -171,25 +171,75 @@
 #define STIPPLE_SHAPE_request_free(name, parameters, arguments) \
   STIPPLE_WRAP(name, parameters, arguments, RecordRequestFree(request), )
 
-// Communicators.
+// Communicators, windows, files. Making and ending them, and some that is done with them, is done
+// by all of their ranks: collectives that move nothing.
 
-#define STIPPLE_SHAPE_comm_create(name, parameters, arguments) \
-  STIPPLE_WRAP(name, parameters, arguments, ,                  \
+#define STIPPLE_MEET(on) RecordCollective(visit, on, Barrier(), 0)
+#define STIPPLE_SHAPE_comm_create(name, parameters, arguments)        \
+  STIPPLE_WRAP(name, parameters, arguments, STIPPLE_MEET(Find(comm)), \
                if (returned == MPI_SUCCESS) CommunicatorCreated(comm, *newcomm))
+#define STIPPLE_SHAPE_comm_idup(name, parameters, arguments)                             \
+  STIPPLE_WRAP(name, parameters, arguments, const uint32_t number = NextRequestNumber(); \
+               RecordCollective(visit, Find(comm), Barrier(), number),                   \
+               if (returned == MPI_SUCCESS) CommunicatorCreated(comm, *newcomm);         \
+               Follow(returned, CollectiveRequest(number), request))
 #define STIPPLE_SHAPE_comm_create_group(name, parameters, arguments) \
-  STIPPLE_WRAP(name, parameters, arguments, ,                        \
-               if (returned == MPI_SUCCESS) CommunicatorCreatedByGroup(comm, tag, *newcomm))
-#ifdef STIPPLE_CLASSIC_PMPI
-#define STIPPLE_SHAPE_comm_between(name, parameters, arguments)  // as plain ones
+  STIPPLE_WRAP(                                                      \
+      name, parameters, arguments, , if (returned == MPI_SUCCESS) {  \
+        CommunicatorCreatedByGroup(comm, tag, *newcomm);             \
+        STIPPLE_MEET(Find(*newcomm));                                \
+      })
+#define STIPPLE_END(name, parameters, arguments, object)                 \
+  STIPPLE_WRAP(name, parameters, arguments, const auto handle = *object; \
+               const Communicator known = Forget(handle);                \
+               STIPPLE_MEET(known), if (returned != MPI_SUCCESS) Remember(handle, known))
+#define STIPPLE_SHAPE_comm_free(name, parameters, arguments) \
+  STIPPLE_END(name, parameters, arguments, comm)
+
+#ifdef STIPPLE_CLASSIC_PMPI  // as plain ones
+#define STIPPLE_SHAPE_comm_from(name, parameters, arguments)
+#define STIPPLE_SHAPE_comm_join(name, parameters, arguments)
+#define STIPPLE_SHAPE_comm_between(name, parameters, arguments)
+#define STIPPLE_SHAPE_win_create(name, parameters, arguments)
+#define STIPPLE_SHAPE_win_collective(name, parameters, arguments)
+#define STIPPLE_SHAPE_win_free(name, parameters, arguments)
+#define STIPPLE_SHAPE_file_open(name, parameters, arguments)
+#define STIPPLE_SHAPE_file_collective(name, parameters, arguments)
+#define STIPPLE_SHAPE_file_icollective(name, parameters, arguments)
+#define STIPPLE_SHAPE_file_close(name, parameters, arguments)
 #else
+#define STIPPLE_SHAPE_comm_from(name, parameters, arguments)          \
+  STIPPLE_WRAP(name, parameters, arguments, STIPPLE_MEET(Find(comm)), \
+               if (returned == MPI_SUCCESS) CommunicatorCreatedBetween(*newcomm))
+#define STIPPLE_SHAPE_comm_join(name, parameters, arguments)        \
+  STIPPLE_WRAP(                                                     \
+      name, parameters, arguments, , if (returned == MPI_SUCCESS) { \
+        CommunicatorCreatedBetween(*newcomm);                       \
+        STIPPLE_MEET(Find(*newcomm));                               \
+      })
 #define STIPPLE_SHAPE_comm_between(name, parameters, arguments) \
   STIPPLE_WRAP(name, parameters, arguments, ,                   \
                if (returned == MPI_SUCCESS) CommunicatorCreatedBetween(*newcomm))
+
+#define STIPPLE_SHAPE_win_create(name, parameters, arguments)         \
+  STIPPLE_WRAP(name, parameters, arguments, STIPPLE_MEET(Find(comm)), \
+               if (returned == MPI_SUCCESS) SharedCreated(comm, *win))
+#define STIPPLE_SHAPE_win_collective(name, parameters, arguments) \
+  STIPPLE_WRAP(name, parameters, arguments, STIPPLE_MEET(FindShared(win)), )
+#define STIPPLE_SHAPE_win_free(name, parameters, arguments) \
+  STIPPLE_END(name, parameters, arguments, win)
+#define STIPPLE_SHAPE_file_open(name, parameters, arguments)          \
+  STIPPLE_WRAP(name, parameters, arguments, STIPPLE_MEET(Find(comm)), \
+               if (returned == MPI_SUCCESS) SharedCreated(comm, *fh))
+#define STIPPLE_SHAPE_file_collective(name, parameters, arguments) \
+  STIPPLE_WRAP(name, parameters, arguments, STIPPLE_MEET(FindShared(fh)), )
+#define STIPPLE_SHAPE_file_icollective(name, parameters, arguments)                      \
+  STIPPLE_WRAP(name, parameters, arguments, const uint32_t number = NextRequestNumber(); \
+               RecordCollective(visit, FindShared(fh), Barrier(), number),               \
+               Follow(returned, CollectiveRequest(number), request))
+#define STIPPLE_SHAPE_file_close(name, parameters, arguments) \
+  STIPPLE_END(name, parameters, arguments, fh)
 #endif
-#define STIPPLE_SHAPE_comm_free(name, parameters, arguments)               \
-  STIPPLE_WRAP(name, parameters, arguments, const MPI_Comm handle = *comm; \
-               const Communicator known = Forget(handle),                  \
-               if (returned != MPI_SUCCESS) Remember(handle, known))
 
 // Collectives: the traffic of each rule, from the parameters' names.
 

@@ -117,6 +117,44 @@ TEST(Blame, TurnsBetweenBarriersAreSerialisation) {
   EXPECT_EQ(KindsOf(SumsOf(Written(ranks))), std::set<std::string>{"serialisation"});
 }
 
+// The nodes end one after the other, then the host puts the picture together. What it does is not
+// the last of their turns.
+TEST(Blame, HostThatWorksAloneAtTheEndTakesNoTurn) {
+  std::vector<Rank> ranks = Ranks(5);
+  Rank& host = ranks[4];
+  host.stream.Define(DefineHost{});
+  std::uint64_t now = 1001;
+  for (int r = 0; r < 4; ++r) {
+    const auto done = static_cast<std::uint64_t>(2000 + 600 * r);
+    if (r > 0) {
+      host.Send(r, 1, now, now + 2);
+      ranks[r].Receive(4, 1, 1010, now + 4);
+    }
+    ranks[r].Call(kWork, now + 6, done - 5);
+    ranks[r].Send(4, 2, done, done + 5);
+    ranks[r].Barrier(done + 10, 6005);
+    ranks[r].Finalize(6010, 6020);
+    host.Receive(r, 2, now + 5, done + 5);
+    now = done + 10;
+  }
+  host.Call(kHelp, now, 5990);
+  host.Barrier(6000, 6005);
+  host.Finalize(6010, 6020);
+  const Written w(ranks);
+  double at_the_end = 0;
+  for (const auto& [key, ns] : SumsOf(w)) {
+    if (std::get<2>(key) != 4) continue;
+    EXPECT_NE(std::get<0>(key), "serialisation") << ns;
+    if (std::get<0>(key) == "end-imbalance") at_the_end += ns;
+  }
+  EXPECT_GT(at_the_end, 4 * 2100);
+  const Analysis analysis(w.trace);
+  const Blame first = BlameOf(w.trace, analysis.mpi, analysis.waits, {}).front();
+  EXPECT_EQ(first.culprit, 4);
+  EXPECT_EQ(w.trace.regions()[first.region].name, "help");
+  ExpectAllIdleTimeIsCharged(w);
+}
+
 // The same rank is late at each barrier, the others work half as long.
 TEST(Blame, OneSlowRankIsNotSerialisation) {
   std::vector<Rank> ranks = Ranks(4);
@@ -238,8 +276,56 @@ TEST(Blame, SenderBehindTheHeadOfTheLineIsHeldUpByIt) {
   const Written w(ranks);
   const Sums sums = SumsOf(w);
   EXPECT_NEAR(sums.at({"head-of-line", 2, 1}), 900, 1);
-  EXPECT_NEAR(sums.at({"late-receiver", 2, 0}), 20, 1);
+  // That rank 0 was not there then, either, is because it had waited before.
+  EXPECT_NEAR(sums.at({"late-receiver", 2, 1}), 20, 1);
   ExpectAllIdleTimeIsCharged(w);
+}
+
+// A line of ranks that work 1000 in each step, but rank 3 twice that. Its neighbours' neighbours
+// wait for its neighbours, which work no longer than anybody: what made them late is one step back.
+TEST(Blame, DelayThatWandersIsChargedToWhereItBegan) {
+  constexpr int kRanks = 6;
+  constexpr int kSteps = 8;
+  std::vector<Rank> ranks = Ranks(kRanks);
+  std::vector<std::uint64_t> now(kRanks, 1000);
+  for (int step = 0; step < kSteps; ++step) {
+    std::vector<std::uint64_t> sent(kRanks);
+    for (int r = 0; r < kRanks; ++r) {
+      const auto i = static_cast<std::size_t>(r);
+      ranks[i].Call(kWork, now[i] + 1, now[i] + (r == 3 ? 1999 : 999));
+      sent[i] = now[i] + (r == 3 ? 2000 : 1000);
+      if (r > 0) ranks[i].Send(r - 1, 1, sent[i], sent[i] + 1);
+      if (r + 1 < kRanks) ranks[i].Send(r + 1, 1, sent[i], sent[i] + 1);
+      now[i] = sent[i] + 2;
+    }
+    for (int r = 0; r < kRanks; ++r) {
+      const auto i = static_cast<std::size_t>(r);
+      for (const int from : {r - 1, r + 1}) {
+        if (from < 0 || from >= kRanks) continue;
+        const std::uint64_t end = std::max(now[i], sent[static_cast<std::size_t>(from)]) + 2;
+        ranks[i].Receive(from, 1, now[i], end);
+        now[i] = end;
+      }
+    }
+  }
+  for (int r = 0; r < kRanks; ++r) ranks[static_cast<std::size_t>(r)].End(30'000);
+  const Written w(ranks);
+  std::map<int, double> charged;
+  double all = 0;
+  for (const auto& [key, ns] : SumsOf(w)) {
+    charged[std::get<2>(key)] += ns;
+    all += ns;
+  }
+  EXPECT_GT(all, 4000 * (kSteps - 3));
+  EXPECT_GT(charged[3], 0.98 * all);
+  ExpectAllIdleTimeIsCharged(w);
+  // Of some ranks only: the same.
+  Selection last;
+  last.ranks = {0};
+  for (const auto& [key, ns] : SumsOf(w, last)) {
+    EXPECT_EQ(std::get<1>(key), 0);
+    EXPECT_TRUE(ns <= 100 || std::get<2>(key) == 3) << ns;
+  }
 }
 
 // What ends with MPI_Finalize, or with a barrier and nothing behind it, ends the run.

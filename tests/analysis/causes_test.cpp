@@ -198,6 +198,16 @@ TEST(Phases, AreFoundWhereTheSeriesChanges) {
   EXPECT_EQ(BeginsOf({1}).size(), 1U);
 }
 
+// Ranks that come one after the other are one phase, not one each.
+TEST(Phases, AreNoSlivers) {
+  std::vector<double> series(512, 0.1);
+  for (std::size_t i = 0; i < 12; ++i) series[i] = i < 4 ? 0.9 : i < 8 ? 0.3 : 0.7;
+  const std::vector<std::size_t> begins = BeginsOf(series);
+  ASSERT_GE(begins.size(), 2U);
+  for (std::size_t i = 1; i < begins.size(); ++i) EXPECT_GE(begins[i] - begins[i - 1], 10U);
+  EXPECT_EQ(begins[1], 12U);
+}
+
 TEST(Phases, StepsOfALoopAreNotHundredsOfPhases) {
   std::vector<double> series;
   for (int i = 0; i < 512; ++i) series.push_back(i / 8 % 2 == 0 ? 1 : 0);

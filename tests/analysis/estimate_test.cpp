@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Times of runs whose events are not all timed: a simulated program knows the truth, and records
 // like the runtime does, under a clock that recording itself moves on.
+#include "analysis/stats/estimate.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +12,7 @@
 #include <map>
 #include <random>
 #include <set>
+#include <string>
 #include <vector>
 
 #include "analysis/stats/analysis.h"
@@ -350,6 +353,44 @@ TEST(Sparse, TruthLiesWithinProvableBounds) {
       EXPECT_GE(read.times[region].exclusive_bounds_ns.high, ticks);
       EXPECT_LE(read.times[region].exclusive_bounds_ns.low, ticks);
       EXPECT_TRUE(std::isnan(read.times[region].inclusive_bounds_ns.low));
+    }
+  }
+}
+
+// The report's quality section costs no scan of its own.
+TEST(Overhead, FromCallPathsIsThatOfAScanOfItsOwn) {
+  for (const std::string mode : {"exact", "sparse:8"}) {
+    Machine machine(mode);
+    machine.sparse = mode == "exact" ? 0 : 8;
+    machine.Visit(kMain, [&] {
+      const std::function<void(int)> walk = [&](int depth) {
+        Times(static_cast<int>(machine.random() % 4), [&](int) {
+          machine.Visit(kOuter + machine.random() % 4, [&] {
+            machine.Work(static_cast<double>(machine.random() % 200));
+            if (depth < 6) walk(depth + 1);
+          });
+        });
+      };
+      Times(100, [&](int) { walk(0); });
+    });
+    machine.End();
+    TemporaryArchive archive;
+    archive.Add(machine.stream);
+    const Trace trace = Trace::Open(archive.path());
+    const Analysis analysis(trace);
+    analysis.NeedPaths();
+    const std::vector<RegionOverhead> scanned =
+        EstimateOf(trace, trace.locations().front(), {}).overhead;
+    const std::vector<RegionOverhead>& found = analysis.overheads.front();
+    ASSERT_EQ(found.size(), scanned.size());
+    EXPECT_GT(found.size(), 4U);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      EXPECT_EQ(found[i].region, scanned[i].region);
+      EXPECT_EQ(found[i].events, scanned[i].events);
+      EXPECT_EQ(found[i].counted, scanned[i].counted);
+      EXPECT_EQ(found[i].measured_ns, scanned[i].measured_ns);
+      EXPECT_EQ(found[i].cost_ns, scanned[i].cost_ns);
+      EXPECT_EQ(found[i].residual_ns, scanned[i].residual_ns);
     }
   }
 }

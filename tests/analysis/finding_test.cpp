@@ -40,9 +40,10 @@ TEST(Finding, OneIsLate) {
       FindingOf({{2000, 1000, 1000, 1000}, {2000, 1000, 1000, 1000}, {1000, 1000, 1000, 1000}});
   EXPECT_EQ(f.sentence,
             "Ranks 1-3 spend 40% of the run waiting for rank 0: it comes last to barriers");
-  EXPECT_EQ(f.detail,
-            "Rank 0 was mostly in work meanwhile; at most 1.50 µs of 5.00 µs could be gained if "
-            "the work were spread evenly.");
+  EXPECT_EQ(
+      f.detail,
+      "Rank 0 was mostly in work meanwhile; at most 1.50 µs of 5.00 µs (30%) could be gained if "
+      "the work were spread evenly.");
   EXPECT_EQ(f.cause, "wait-at-barrier");
   EXPECT_EQ(f.culprit, 0);
   // Spread evenly, each step takes the mean: 1250.

@@ -85,6 +85,12 @@ class RandomStream {
     for (const EventWord word : words) Word(word);
   }
 
+  /// A counted enter, whose leave comes in its place more often than not.
+  void Counted(std::uint32_t region) {
+    if (region != 0 && region < kRegions && Below(3) != 0) stack_.push_back(region);
+    Record(CountedEnter{0, 0, region, static_cast<CountedPurpose>(Below(3)), Below(5)});
+  }
+
   void Step() {
     if (!chunks_.empty() && chunks_.back().size() >= left_in_chunk_) {
       Close();
@@ -122,7 +128,7 @@ class RandomStream {
       case 9:
         return Record(StackSwitch{0, 0, Below(9), Below(12)});
       case 10:
-        return Record(CountedEnter{0, 0, static_cast<std::uint32_t>(Below(kRegions + 3)), {}, 0});
+        return Counted(static_cast<std::uint32_t>(Below(kRegions + 3)));
       case 11:
         return Record(Mark{}, false);
       case 12:

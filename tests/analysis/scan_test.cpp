@@ -7,13 +7,19 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <deque>
+#include <numeric>
 #include <set>
+#include <span>
+#include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
+#include "analysis/stats/estimate_visitor.h"
 #include "analysis/stats/profile_visitor.h"
 #include "analysis/trace/call_stack.h"
+#include "analysis/trace/chunk_code.h"
 #include "tests/analysis/random_stream.h"
 
 namespace stipple {
@@ -47,7 +53,7 @@ TEST(Scan, GoesOnFromAnyPlace) {
     ScanThread(
         stream.thread, RandomStream::kRegions, whole, [](std::uint64_t) {}, 500,
         [&](const ScanPosition& at) { places.emplace_back(at.Place(), whole.seen.size()); });
-    ASSERT_GT(places.size(), kWords / 1000);
+    ASSERT_GT(places.size(), kWords / 2000);
     for (std::size_t i = 0; i < places.size(); i += 1 + places.size() / 7) {
       Recorder rest;
       ScanPosition at(places[i].first);
@@ -60,7 +66,8 @@ TEST(Scan, GoesOnFromAnyPlace) {
   }
 }
 
-std::vector<std::uint32_t> OpenRegionsOf(const ProfileVisitor& visitor) {
+template <class Visitor>
+std::vector<std::uint32_t> OpenRegionsOf(const Visitor& visitor) {
   std::vector<std::uint32_t> regions;
   for (const OpenVisit& v : visitor.OpenVisits())
     regions.push_back(static_cast<std::uint32_t>(v.region));
@@ -97,16 +104,29 @@ TEST(Scan, TellsTheOpenStackBetweenParts) {
 }
 
 /// The same visitor, to which all events come one by one.
+template <class Visitor>
 struct OneByOne {
   struct Hot {
-    ProfileVisitor::Hot hot;
+    typename Visitor::Hot hot;
     void Function(std::uint32_t region, bool leave, std::uint64_t ticks) {
       hot.Function(region, leave, ticks);
     }
-    void Run(const EventWord* first, const UnclockedRun& run) { hot.Run(first, run); }
+    void Run(const EventWord* first,
+             const UnclockedRun& run) requires HasRuns<typename Visitor::Hot> {
+      hot.Run(first, run);
+    }
+    void Unclocked(std::uint32_t region, bool leave,
+                   std::uint64_t ticks) requires HasUnclocked<typename Visitor::Hot> {
+      hot.Unclocked(region, leave, ticks);
+    }
+    void Counted(const EventWord* record, std::uint32_t region,
+                 std::uint64_t ticks) requires HasCounted<typename Visitor::Hot> {
+      hot.Counted(record, region, ticks);
+    }
     void Record(const EventWord* record, std::uint64_t ticks) { hot.Record(record, ticks); }
   };
-  ProfileVisitor& visitor;
+  Visitor& visitor;
+  void BeginChunk() requires HasChunks<Visitor> { visitor.BeginChunk(); }
   Hot Begin() const { return {visitor.Begin()}; }
   void End(const Hot& hot) { visitor.End(hot.hot); }
 };
@@ -151,8 +171,8 @@ using Said = std::tuple<std::vector<WholeStack::Time>, std::vector<std::uint64_t
                         std::uint64_t, std::vector<std::uint32_t>>;
 Said SaidBy(const ProfileVisitor& visitor, const std::vector<std::uint32_t>& open) {
   std::vector<WholeStack::Time> times;
-  for (const RegionTicks& r : visitor.regions())
-    times.push_back({r.Calls(), r.Inclusive(), r.exclusive});
+  for (const VisitSums& r : visitor.regions())
+    times.push_back({r.Calls(), r.Inclusive(), r.Exclusive()});
   std::vector<std::uint64_t> slack;
   for (const RegionSlack& s : visitor.slacks()) {
     slack.push_back(s.guessed);
@@ -174,7 +194,7 @@ TEST_P(Profile, IsTheSameByTheBlockAndEventByEvent) {
         std::pair{first + span / 4, first + span / 2}}) {
     ProfileVisitor fast(RandomStream::kRegions, begin, end, nullptr);
     ProfileVisitor slow(RandomStream::kRegions, begin, end, nullptr);
-    OneByOne one_by_one{slow};
+    OneByOne<ProfileVisitor> one_by_one{slow};
     WholeStack whole(begin, end);
     const auto scan = [&](auto& visitor, std::uint64_t part_words) {
       return ScanThread(stream.thread, RandomStream::kRegions, visitor, ignore, part_words,
@@ -198,6 +218,82 @@ TEST_P(Profile, IsTheSameByTheBlockAndEventByEvent) {
   }
 }
 
+/// All that a scan for estimates says.
+std::vector<double> SaidBy(const EstimateVisitor& visitor) {
+  std::vector<double> said;
+  const auto say = [&said](auto... values) { (said.push_back(static_cast<double>(values)), ...); };
+  for (const RegionTally& r : visitor.regions()) {
+    say(r.Calls(), r.Inclusive(), r.Exclusive(), r.InclusiveCost(), r.timed_children, r.other_cost,
+        r.other_visits, r.other_events, r.pending, r.recursive);
+    for (const VisitSample& s : r.samples)
+      say(s.around, s.nested, s.visits, s.inclusive, s.exclusive, s.inside);
+  }
+  say(visitor.unclocked_events(), visitor.leaves_without_enter(), visitor.enters_without_leave());
+  return said;
+}
+
+/// The same thread with each chunk compacted that can be.
+struct CompactedThread {
+  explicit CompactedThread(const ThreadStream& of) : thread(of) {
+    ChunkCoder coder;
+    for (Chunk& c : thread.chunks) {
+      frames.push_back(coder.Code({c.begin, c.end}).frame);
+      if (frames.back().empty()) continue;
+      c.code = std::as_bytes(std::span(frames.back()));
+      c.coded_words = static_cast<std::uint64_t>(c.end - c.begin);
+      c.begin = c.end = nullptr;
+    }
+  }
+  ThreadStream thread;
+  std::deque<std::string> frames;
+};
+
+class Estimate : public ::testing::TestWithParam<std::uint64_t> {};
+
+TEST_P(Estimate, IsTheSameByTheBlockAndEventByEvent) {
+  const std::uint64_t seed = GetParam();
+  const RandomStream stream(seed, OddsOf(seed), kWords);
+  const CompactedThread compacted(stream.thread);
+  const std::uint64_t first = stream.thread.chunks.front().ticks;
+  const std::uint64_t span = stream.last_ticks() - first;
+  const EventPrices prices{4000, 1500, 9000, 2000, 700, 300, 2500};
+  for (const auto& [begin, end] :
+       {std::pair{first, kNoTickLimit}, std::pair{first + span / 4, first + span / 2}}) {
+    const auto said = [&, begin = begin, end = end](const ThreadStream& thread, bool by_block,
+                                                    std::uint64_t part_words) {
+      EstimateVisitor visitor(RandomStream::kRegions, begin, end, prices, seed % 5 == 0, nullptr);
+      OneByOne<EstimateVisitor> one_by_one{visitor};
+      std::vector<std::vector<std::uint32_t>> open;
+      const auto scan = [&](auto& as) {
+        ScanThread(
+            thread, RandomStream::kRegions, as,
+            [&](std::uint64_t) { open.push_back(OpenRegionsOf(visitor)); }, part_words,
+            [](const ScanPosition&) {});
+      };
+      by_block ? scan(visitor) : scan(one_by_one);
+      visitor.Finish(stream.last_ticks(), {}, 0);
+      return std::pair(SaidBy(visitor), open);
+    };
+    const auto expected = said(stream.thread, false, kNoTickLimit);
+    EXPECT_EQ(expected, said(stream.thread, true, kNoTickLimit));
+    EXPECT_EQ(expected, said(stream.thread, true, 3 + seed * 7));
+    EXPECT_EQ(expected, said(compacted.thread, true, kNoTickLimit));
+    EXPECT_EQ(expected, said(compacted.thread, true, 100 + seed));
+    const auto sum = [](const auto& numbers) {
+      return std::accumulate(numbers.begin(), numbers.end(), std::uint64_t{0});
+    };
+    EstimateVisitor whole(RandomStream::kRegions, begin, end, prices, true, nullptr);
+    ScanThread(
+        stream.thread, RandomStream::kRegions, whole, [](std::uint64_t) {}, kNoTickLimit,
+        [](const ScanPosition&) {});
+    whole.Finish(stream.last_ticks(), {}, 0);
+    std::vector<std::uint64_t> exclusive;
+    for (const RegionTally& r : whole.regions()) exclusive.push_back(r.Exclusive());
+    EXPECT_EQ(std::clamp(stream.last_ticks(), begin, end) - begin, sum(exclusive));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, Estimate, ::testing::Range(std::uint64_t{0}, kSeeds));
 INSTANTIATE_TEST_SUITE_P(Seeds, Profile, ::testing::Range(std::uint64_t{0}, kSeeds));
 
 }  // namespace

@@ -9,11 +9,13 @@
 #include "analysis/stats/finding_of.h"
 #include "analysis/stats/message_matrix.h"
 #include "analysis/stats/profile.h"
+#include "analysis/stats/region_columns.h"
 #include "analysis/stats/states.h"
 #include "analysis/stats/tables.h"
 #include "analysis/stats/timeline_of.h"
 #include "analysis/trace/ranks.h"
 #include "tests/analysis/archive_writer.h"
+#include "tests/analysis/ring.h"
 
 namespace stipple {
 namespace {
@@ -152,6 +154,42 @@ TEST(Profile, PartsOfTheTimeSumToTheWhole) {
   const auto whole = Profile(trace, {});
   EXPECT_NEAR(parts, whole[2].exclusive_ns, 1e-6);
   EXPECT_EQ(calls, whole[2].calls);
+}
+
+TEST(RegionColumns, EachHoldsWhatTheProfileSaysOfItsTime) {
+  TemporaryArchive archive;
+  WriteRing(archive, 3, 200, 4);
+  const Trace trace = Trace::Open(archive.path());
+  const Analysis analysis(trace);
+  std::vector<std::uint32_t> regions;
+  for (std::uint32_t r = 1; r < trace.regions().size(); ++r) regions.push_back(r);
+  const std::vector<int> ranks = trace.RanksInOrder();
+  constexpr std::size_t kColumns = 16;
+  const std::vector<RegionColumns> columns =
+      RegionColumnsOf(analysis, {.regions = regions, .ranks = ranks, .columns = kColumns});
+  ASSERT_EQ(columns.size(), regions.size() + 1);
+  const auto edge = [&](std::size_t c) {
+    return std::llround(static_cast<double>(trace.SpanNs()) * static_cast<double>(c) / kColumns);
+  };
+  for (std::size_t c = 0; c < kColumns; ++c) {
+    Selection part;
+    part.begin_ns = edge(c);
+    part.end_ns = edge(c + 1);
+    const std::vector<RegionTime> truth = SumOfMains(analysis, part);
+    double all = 0;
+    for (const RegionTime& t : truth) all += t.exclusive_ns;
+    EXPECT_NEAR(static_cast<double>(columns.back().exclusive_ns[c]), all, 20) << c;
+    for (std::size_t i = 0; i < regions.size(); ++i) {
+      const RegionTime& t = truth[regions[i]];
+      EXPECT_NEAR(static_cast<double>(columns[i].exclusive_ns[c]), t.exclusive_ns, 6) << c;
+      EXPECT_NEAR(static_cast<double>(columns[i].inclusive_ns[c]), t.inclusive_ns, 6) << c;
+      // What is entered at an edge is a call of both sides there.
+      EXPECT_NEAR(static_cast<double>(columns[i].calls[c]), static_cast<double>(t.calls), 1) << c;
+      std::uint64_t by_rank = 0;
+      for (const auto& of_rank : columns[i].exclusive_by_rank) by_rank += of_rank[c];
+      EXPECT_EQ(by_rank, columns[i].exclusive_ns[c]);
+    }
+  }
 }
 
 TEST(Messages, MatchInTheOrderOfPostsNotOfCompletions) {

@@ -36,7 +36,7 @@ Drawn Draw(Sampler& sampler, ImageSize size, Samples samples) {
   Drawn drawn;
   for (RasterPoint point = 0; point < PointCount(RasterOf(size, samples)); ++point)
     drawn.raster.push_back(sampler.Sample(point));
-  drawn.image = PictureOf(drawn.raster, size, samples);
+  drawn.image = PictureOf(drawn.raster, size, samples).picture;
   drawn.counts = sampler.counts();
   return drawn;
 }

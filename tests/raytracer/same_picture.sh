@@ -39,6 +39,9 @@ check 2 --partition bundles --bundle 1000
 check 3 --partition bundles --bundle 49 --select modulo
 check 5 --partition bundles --bundle 7 --select random --seed 3
 check 5 --partition bundles --bundle 100000
+check 1 --partition guided
+check 2 --partition guided
+check 5 --partition guided
 
 # Adaptive sampling decides from the whole picture, so that it too depends on no partition.
 scene="--scene balls --scene-size 2 --resolution 24x20 --samples adaptive --tolerance 0.003"
@@ -49,6 +52,7 @@ check 3 --partition tiled --tile blocks
 check 4 --partition scattered
 check 3 --partition bundles --bundle 50
 check 4 --partition bundles --bundle 7 --select random
+check 3 --partition guided
 
 "$raytracer" --compare serial.png serial.png | grep -q '^identical'
 "$raytracer" $scene --max-depth 1 --output shallow.png > shallow.txt

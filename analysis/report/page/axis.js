@@ -17,12 +17,15 @@ function timeTicks() {
   if (ticks.length) ticks[ticks.length - 1].label += " " + unit[0];
   return ticks;
 }
-function drawAxis(layer, y) {
-  var ticks = timeTicks(), d = "M" + data.left + " " + (Math.floor(y) + .5) + "H" + data.right;
+function drawAxis(layer, y) { drawAxisOf(layer, data.left, data.right, y); }
+// Of a picture whose axis lies elsewhere.
+function drawAxisOf(layer, left, right, y) {
+  var ticks = timeTicks(), d = "M" + left + " " + (Math.floor(y) + .5) + "H" + right, scale = (right - left) / (data.right - data.left);
+  ticks.forEach(function (tick) { tick.x = left + (tick.x - data.left) * scale; });
   ticks.forEach(function (tick) { d += "M" + (Math.floor(tick.x) + .5) + " " + (Math.floor(y) + .5) + "v5"; });
   path(layer, d, {stroke: colour.hairline});
   ticks.forEach(function (tick) {
-    var half = textWidth(tick.label, 12) / 2, x = Math.min(tick.x, data.right + 14 - half);
+    var half = textWidth(tick.label, 12) / 2, x = Math.min(tick.x, right + 14 - half);
     text(layer, x, y + 16, tick.label, {fill: colour.secondary, anchor: "middle"});
   });
 }

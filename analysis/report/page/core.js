@@ -93,6 +93,15 @@ function sumTo(sums, place) {
   return sums[whole] + (sums[whole + 1] - sums[whole]) * (place - whole);
 }
 
+// Between two places, by whole columns and parts of those at the ends.
+function sumBetween(sums, from, to) { return sumTo(sums, to) - sumTo(sums, from); }
+// Numbers of steps, as sums in the unit.
+function stepSums(steps) {
+  var sums = sumsOf(numbersOf(steps.n));
+  for (var i = 0; i < sums.length; ++i) sums[i] *= steps.unit;
+  return sums;
+}
+
 var source = byId("data"), data = source ? JSON.parse(source.textContent) : {}, hasTime = !!data.rows;
 var span = hasTime ? data.end - data.begin : 0, rows = data.rows || [];
 rows.forEach(function (row) {
@@ -134,11 +143,18 @@ function liveLayer(svg, kept) {
   layer.textContent = "";
   return layer;
 }
-function setNote(svg, text) {
-  var section = svg.closest("section.panel"), note = section && section.querySelector(".note");
+function setNote(element, text) {
+  var section = element.closest("section.panel"), note = section && section.querySelector(".note");
+  if (!note && section && text !== null) note = section.querySelector("header").appendChild(make("span", {"class": "note"}));
   if (!note) return;
   if (note.dataset.whole === undefined) note.dataset.whole = note.textContent;
   note.textContent = text === null ? note.dataset.whole : text;
+}
+// Of a panel that does not follow the range.
+function saysWhole(element) {
+  setNote(element, "");
+  var said = element.closest("section.panel").querySelector(".note").dataset.whole;
+  setNote(element, said.indexOf("whole run") === 0 ? said : "whole run" + (said ? " \u00b7 " + said : ""));
 }
 var colour = {ink: "#1f2933", secondary: "#66727f", grid: "#e3e7eb", hairline: "#b8c1ca", accent: "#b42318", quiet: "#c2c9d3", band: "#c9dcef",
   loadFill: "#fae0b4", loadLine: "#b8770a", states: ["#3672b9", "#7a1f3d", "#f0a830", "#e8ebef"]};
@@ -157,6 +173,20 @@ function path(layer, d, attributes) {
   var element = makeSvg("path", attributes);
   element.setAttribute("d", d);
   return layer.appendChild(element);
+}
+// The ramp of views/palette.h.
+var rampStops = [[0xee, 0xf4, 0xfa], [0x9d, 0xc1, 0xe2], [0x36, 0x72, 0xb9], [0x08, 0x28, 0x56]], rampSteps = 24;
+function rampColour(step) {
+  var scaled = clamp(step / rampSteps, 0, 1) * 3, stop = Math.min(2, Math.floor(scaled)), share = scaled - stop;
+  return "#" + [0, 1, 2].map(function (i) { return ("0" + Math.round(rampStops[stop][i] + (rampStops[stop + 1][i] - rampStops[stop][i]) * share).toString(16)).slice(-2); }).join("");
+}
+// Rectangles of a drawn layer: views/svg_write.cpp writes them with their lower edge first.
+function rectanglesOf(svg, layer) {
+  var found = [], shape = /M([\d.-]+) ([\d.-]+)h([\d.]+)v-([\d.]+)h/g;
+  all(":scope > g." + layer + " path", svg).forEach(function (drawn) {
+    for (var match; (match = shape.exec(drawn.getAttribute("d")));) found.push({x: +match[1], y: match[2] - match[4], width: +match[3], height: +match[4]});
+  });
+  return found;
 }
 var measure = document.createElement("canvas").getContext("2d");
 function textWidth(words, size, bold) {

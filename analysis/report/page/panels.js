@@ -6,7 +6,7 @@ function panelOf(name, update) {
   if (!svg) return;
   var heading = svg.closest("section.panel").querySelector("h3"), title = heading.textContent;
   watchers.push(function () {
-    heading.textContent = isWhole() ? title : title.replace("Whole run", "This part");
+    heading.textContent = isWhole() ? title : title.replace("Whole run", "This part").replace("whole run", "this part");
     if (isWhole()) setNote(svg, null);
     else update(svg);
   });
@@ -103,7 +103,7 @@ panelOf("utilisation", function (svg) {
   setNote(svg, "mean of " + data.noun + "s, " + formatWindow(windowOf()) + " window \u00b7 band: least to most busy \u00b7 dashed: since the start");
 });
 panelOf("message-load", function (svg) {
-  if (!messages.byteSums) return;
+  if (!messages.byteSums) return saysWhole(svg);
   var layer = liveLayer(svg, []);
   var load = overTime(function (from, to) { return (sentBefore(to)[1] - sentBefore(from)[1]) / (to - from); });
   var largest = roundStep(Math.max.apply(null, load.concat(1)), 1), unit = byteUnit(largest);
@@ -123,7 +123,7 @@ function waitedIn(wait, from, to) {
   return (sumTo(wait.sums, (to - data.begin) / span * bins) - sumTo(wait.sums, (from - data.begin) / span * bins)) * 1e-9;
 }
 panelOf("waited-for", function (svg) {
-  if (!waits.length) return setNote(svg, "whole run");
+  if (!waits.length) return saysWhole(svg);
   var layer = liveLayer(svg, []), bars = layer.appendChild(makeSvg("g", {"class": "bars"}));
   var some = waits.map(function (wait) { return {wait: wait, seconds: waitedIn(wait, range.from, range.to)}; });
   some.sort(function (a, b) { return b.seconds - a.seconds; });

@@ -27,6 +27,7 @@ struct Corner {
   float u = 0, v = 0;
   float ink = 0;
   std::uint8_t red = 0, green = 0, blue = 0, alpha = 255;
+  friend bool operator==(const Corner&, const Corner&) = default;
 };
 static_assert(sizeof(Corner) == 24);
 

@@ -10,6 +10,7 @@
 
 #include "analysis/stats/number.h"
 #include "analysis/views/layout.h"
+#include "analysis/views/mark_groups.h"
 #include "analysis/views/mark_names.h"
 #include "analysis/views/text.h"
 #include "analysis/views/window/shapes.h"
@@ -18,8 +19,6 @@ namespace stipple {
 namespace {
 
 constexpr std::size_t kMostLines = 400;
-constexpr double kMarkSize = 11;
-constexpr double kMarkSpacing = 12;
 constexpr double kLeastPitchForMarks = 24;
 constexpr double kMostPitch = 96;
 constexpr double kLeastPitchForVisits = 34;
@@ -291,11 +290,6 @@ void TimelinePart::DrawMessages(const TimelineData& data) {
 
 void TimelinePart::DrawLetters(const TimelineData& data) {
   if (grid_.pitch < kLeastPitchForMarks || grid_.ranks_per_row != 1) return;
-  struct EventMark {
-    double x;
-    char letter;
-    std::size_t message;
-  };
   std::vector<std::vector<EventMark>> by_row(grid_.rows.size());
   const auto add = [&](int rank, std::int64_t ns, char letter, std::size_t message) {
     const auto row = RowOfRank(rank);
@@ -310,22 +304,13 @@ void TimelinePart::DrawLetters(const TimelineData& data) {
     std::vector<EventMark>& marks = by_row[row];
     std::ranges::stable_sort(marks, {}, &EventMark::x);
     const double y = bars_.rows[row].y - 7;
-    for (std::size_t i = 0; i < marks.size();) {
-      std::size_t count = 1;
-      double x = marks[i].x, reach = x + kMarkSpacing;
-      std::string text(1, marks[i].letter);
-      while (i + count < marks.size() && marks[i + count].x < reach) {
-        ++count;
-        text = FormatShort(static_cast<double>(count));
-        x = (marks[i].x + marks[i + count - 1].x) / 2;
-        reach = std::max(reach, x + TextWidth(text, kMarkSize, true) / 2 + kMarkSpacing);
-      }
-      LetterHit hit{{x - 6, y - 7, 12, 14}, {}};
-      for (std::size_t k = i; k < i + count; ++k) hit.messages.push_back(marks[k].message);
-      AddText(letters, {x, y}, text,
+    for (const MarkGroup& group : GroupMarks(marks)) {
+      LetterHit hit{{group.x - 6, y - 7, 12, 14}, {}};
+      for (std::size_t k = 0; k < group.count; ++k)
+        hit.messages.push_back(marks[group.first + k].message);
+      AddText(letters, {group.x, y}, group.text,
               {.size = kMarkSize, .colour = kInk, .bold = true, .anchor = Anchor::kMiddle});
       letter_hits_.push_back(std::move(hit));
-      i += count;
     }
   }
 }

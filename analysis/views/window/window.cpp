@@ -81,6 +81,7 @@ class Window {
     canvas_.controller().mono = options.mono;
     interactor_->SetRenderWindow(canvas_.window());
     interactor_->SetInteractorStyle(nullptr);
+    interactor_->EnableRenderOff();  // the canvas paints
   }
 
   void Run() {
@@ -146,6 +147,9 @@ class Window {
       case vtkCommand::TimerEvent:
         OnTimer(*static_cast<int*>(data));
         return;
+      case vtkCommand::ExposeEvent:
+        canvas_.Uncovered();
+        break;
       default:
         break;
     }

@@ -1,23 +1,21 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/views/window/window_canvas.h"
 
-#include <vtkContextActor.h>
-#include <vtkContextScene.h>
-#include <vtkNew.h>
+#include <vtkOpenGLRenderWindow.h>
 #include <vtkRenderWindow.h>
-#include <vtkRenderer.h>
+#include <vtkSmartPointer.h>
 
 #include <utility>
 
 #include "analysis/views/window/facts.h"
-#include "analysis/views/window/window_item.h"
+#include "analysis/views/window/window_painter.h"
 
 namespace stipple {
 
 struct WindowCanvas::Vtk {
-  vtkNew<vtkRenderWindow> window;
-  vtkNew<vtkRenderer> renderer;
-  vtkNew<WindowItem> item;
+  vtkSmartPointer<vtkRenderWindow> made = vtkSmartPointer<vtkRenderWindow>::New();
+  vtkOpenGLRenderWindow* window = vtkOpenGLRenderWindow::SafeDownCast(made);
+  WindowPainter painter;
 };
 
 WindowCanvas::WindowCanvas(const WindowSource& source, std::vector<int> ranks, int width,
@@ -30,26 +28,24 @@ WindowCanvas::WindowCanvas(const WindowSource& source, std::vector<int> ranks, i
   state_.ShowRanks(std::move(ranks));
   vtk_->window->SetMultiSamples(0);  // edges are smooth without
   vtk_->window->SetSize(width, height);
-  vtk_->window->AddRenderer(vtk_->renderer);
-  vtk_->renderer->SetBackground(1, 1, 1);
-  vtkNew<vtkContextActor> actor;
-  actor->GetScene()->AddItem(vtk_->item);
-  vtk_->renderer->AddActor(actor);
   title_ = TitleOf(state_, source_);
   vtk_->window->SetWindowName(title_.c_str());
 }
 
 WindowCanvas::~WindowCanvas() {
-  // The item's buffers go while the context that they belong to is still there.
-  vtk_->item->ReleaseGraphicsResources();
+  // The painter's buffers go while the context that they belong to is still there.
+  vtk_->painter.ReleaseGraphicsResources();
 }
 
 void WindowCanvas::Render() {
+  // Not before: an interactor that finds no connection to the X server opens one and keeps it until
+  // its loop has ended.
+  vtk_->window->Initialize();
   const int* size = vtk_->window->GetSize();
   scene_.Resize(size[0], size[1]);
-  vtk_->item->Show(scene_.Update(state_, controller_.moving(), controller_.band()),
-                   controller_.mono);
-  vtk_->window->Render();
+  vtk_->painter.Show(scene_.Update(state_, controller_.moving(), controller_.band()),
+                     controller_.mono);
+  vtk_->painter.Paint(*vtk_->window);
   // Behind the picture, so that whoever waits for the title finds it drawn.
   std::string title = TitleOf(state_, source_);
   if (title == title_) return;
@@ -57,8 +53,8 @@ void WindowCanvas::Render() {
   vtk_->window->SetWindowName(title_.c_str());
 }
 
-vtkRenderWindow* WindowCanvas::window() { return vtk_->window; }
+void WindowCanvas::Uncovered() { vtk_->painter.PaintAll(); }
 
-std::size_t WindowCanvas::corner_count() const { return vtk_->item->corner_count(); }
+vtkRenderWindow* WindowCanvas::window() { return vtk_->window; }
 
 }  // namespace stipple

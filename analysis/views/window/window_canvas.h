@@ -4,7 +4,6 @@
 #ifndef STIPPLE_ANALYSIS_VIEWS_WINDOW_WINDOW_CANVAS_H
 #define STIPPLE_ANALYSIS_VIEWS_WINDOW_WINDOW_CANVAS_H
 
-#include <cstddef>
 #include <memory>
 #include <string>
 #include <vector>
@@ -26,11 +25,12 @@ class WindowCanvas {
   WindowCanvas& operator=(const WindowCanvas&) = delete;
 
   void Render();
+  /// The X server forgot what the window showed.
+  void Uncovered();
   vtkRenderWindow* window();
   ViewState& state() { return state_; }
   WindowScene& scene() { return scene_; }
   Controller& controller() { return controller_; }
-  std::size_t corner_count() const;  // of the triangles drawn
 
  private:
   const WindowSource& source_;

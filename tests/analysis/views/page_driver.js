@@ -140,6 +140,21 @@
     var table = byId("states-table");
     if (table) document.body.dataset.states = JSON.stringify(Array.from(table.tBodies[0].rows, function (row) { return Array.from(row.cells).slice(1).map(function (cell) { return Number(cell.dataset.v); }); }));
     document.body.dataset.range = text.textContent;
+    // Each panel follows the range or says that it does not.
+    all("section.panel svg[role=img]").forEach(function (picture) {
+      var name = picture.getAttribute("class").split(" ")[0].slice(5), note = picture.closest("section.panel").querySelector(".note");
+      if (["detail", "phase-bars", "accuracy", "dials", "now"].indexOf(name) >= 0) return;
+      expect(picture.querySelector(":scope > g.live") || (note && note.textContent.indexOf("whole run") === 0), name + " neither follows nor says so");
+    });
+    var functions = byId("functions-table");
+    if (functions && data.functions) {
+      var shares = 0;
+      all("td.share", functions).forEach(function (cell) { if (!cell.parentNode.hidden) shares += parseInt(cell.textContent, 10) || 0; });
+      expect(shares <= 115, "functions take " + shares + "% of the part");
+      all("tbody tr[data-f]", functions).forEach(function (row) {
+        expect(row.cells[4].dataset.v <= row.cells[3].dataset.v * 1.02 + 1e-6, "more exclusive than inclusive time: " + row.cells[0].textContent);
+      });
+    }
     // Keys.
     plot.focus();
     var now = text.textContent;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/report/matrix_cells.h"
 #include "analysis/views/table_access.h"
 
 namespace stipple {
@@ -259,8 +260,64 @@ std::vector<FunctionSpread> SpreadsOf(const Table& profile, std::size_t ranks) {
   return spreads;
 }
 
+/// Each function works evenly over the run, on every rank.
+FunctionSeries FunctionsOf(const Table& profile, std::size_t ranks) {
+  constexpr std::size_t kParts = 256;
+  FunctionSeries series;
+  series.all_ns.resize(kParts);
+  const std::size_t rows = ranks > 64 ? 0 : ranks;
+  for (std::size_t i = 0; i < std::min<std::size_t>(profile.rows.size(), 30); ++i) {
+    const auto part = [&](std::size_t column, double scale) {
+      return static_cast<std::uint64_t>(CellNumber(profile.rows[i][column]) * scale / kParts);
+    };
+    FunctionSeries::Function f{CellText(profile.rows[i][0]), i == 3, {}};
+    f.columns.calls.assign(kParts, part(3, 1));
+    f.columns.inclusive_ns.assign(kParts, part(4, 1e9));
+    f.columns.exclusive_ns.assign(kParts, part(5, 1e9));
+    f.columns.exclusive_by_rank.assign(
+        rows, std::vector<std::uint64_t>(kParts, part(5, 1e9 / static_cast<double>(ranks))));
+    for (std::size_t c = 0; c < kParts; ++c) series.all_ns[c] += f.columns.exclusive_ns[c];
+    series.functions.push_back(std::move(f));
+  }
+  return series;
+}
+
+/// Messages as the matrix says, spread evenly over the run, and a wait for each pair.
+PairSeries PairsOf(const ReportInput& report) {
+  PairSeries series;
+  const std::size_t ranks = report.messages.rows.size();
+  const MatrixCells cells =
+      CellsFor(ranks, !report.timeline.rows.empty() && report.timeline.rows.back().is_host);
+  if (ranks < 2) return series;
+  series.columns = 64;
+  for (std::uint32_t c = 0; c < series.columns; ++c)
+    for (std::uint32_t i = 0; i < cells.count; ++i)
+      for (std::uint32_t k = 0; k < cells.count; ++k) {
+        const double count =
+            CellNumber(report.messages.rows[i * ranks / cells.count][k * ranks / cells.count + 1]);
+        series.parts.push_back({c, i, k, static_cast<std::uint64_t>(count),
+                                static_cast<std::uint64_t>(count * 970), 40'000 + i * 1000 + k});
+      }
+  return series;
+}
+
+Table PhasesOf(const Timeline& timeline) {
+  Table table{"phases",
+              TableShape::kRows,
+              {{"begin_s"}, {"end_s"}, {"user"}, {"message"}, {"max_over_mean"}, {"busiest_rank"}},
+              {}};
+  const double ends[] = {0, 0.01 * kSpan, 0.3 * kSpan, kTurn, 0.9 * kSpan, kSpan};
+  for (std::size_t i = 0; i + 1 < std::size(ends); ++i)
+    table.rows.push_back(
+        {ends[i], ends[i + 1], 0.61, 0.1, 1.5, std::int64_t{timeline.rows[0].rank}});
+  return table;
+}
+
 /// What follows from the rest.
 void AddSeries(ReportInput& report, bool all_messages) {
+  report.function_series = FunctionsOf(report.profile, report.timeline.rows.size());
+  report.pair_series = PairsOf(report);
+  report.phases = PhasesOf(report.timeline);
   report.message_series = MessagesOf(report, all_messages);
   report.wait_series = WaitSeriesOf(report.finding);
   report.spreads = SpreadsOf(report.profile, report.timeline.rows.size());

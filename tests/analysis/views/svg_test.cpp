@@ -18,6 +18,7 @@
 #include "analysis/report/html.h"
 #include "analysis/report/html_compare.h"
 #include "analysis/report/html_style.h"
+#include "analysis/report/page_code.h"
 #include "analysis/report/page_data.h"
 #include "analysis/views/palette.h"
 #include "sample_inputs.h"

@@ -71,7 +71,7 @@ Drawn DrawIn(Scene scene, ImageSize size) {
   Raster raster;
   for (RasterPoint point = 0; point < PointCount(RasterOf(size, {})); ++point)
     raster.push_back(sampler->Sample(point));
-  return {PictureOf(raster, size, {}), sampler->counts()};
+  return {PictureOf(raster, size, {}).picture, sampler->counts()};
 }
 
 int CompareDigits(const char* const* words) {

@@ -36,7 +36,7 @@ TEST(Loss, NoPixelLosesMoreThanIsSaid) {
     for (const ShadingChoice choice : kChoices) {
       const Traced traced(scene, kImage, {}, choice);
       const Raster raster = traced.Draw();
-      const LinearImage picture = LinearPictureOf(raster, kImage, {});
+      const LinearImage picture = LinearPictureOf(raster, kImage, {}).picture;
       double mean = 0, worst = 0;
       for (std::size_t i = 0; i < endless.rgb.size(); i += 3) {
         double most = 0;

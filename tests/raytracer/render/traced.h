@@ -38,7 +38,7 @@ struct Traced {
     }
     return raster;
   }
-  LinearImage Picture() const { return LinearPictureOf(Draw(), image, samples); }
+  LinearImage Picture() const { return LinearPictureOf(Draw(), image, samples).picture; }
 
   Scene scene;
   ImageSize image;

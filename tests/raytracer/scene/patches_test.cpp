@@ -166,7 +166,7 @@ TEST(Patches, PicturesAgree) {
     Raster raster(PointCount(RasterOf(kSmall, {})));
     for (RasterPoint point = 0; point < raster.size(); ++point)
       raster[point] = sampler->Sample(point);
-    return PictureOf(raster, kSmall, {});
+    return PictureOf(raster, kSmall, {}).picture;
   };
   const Image direct = picture(0);
   double last = 1;

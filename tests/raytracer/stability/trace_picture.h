@@ -26,7 +26,7 @@ Traced TraceWith(const Scene& scene, const Model<Real>& model, const Kernel<Real
   Raster raster;
   for (RasterPoint point = 0; point < PointCount(RasterOf(image, corners)); ++point)
     raster.push_back(sampler->Sample(point));
-  return {sampler->counts(), PictureOf(raster, image, corners)};
+  return {sampler->counts(), PictureOf(raster, image, corners).picture};
 }
 
 template <class Real>

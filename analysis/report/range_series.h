@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // What the page's panels show for any part of the run, kept small.
-#ifndef STIPPLE_ANALYSIS_REPORT_SERIES_H
-#define STIPPLE_ANALYSIS_REPORT_SERIES_H
+#ifndef STIPPLE_ANALYSIS_REPORT_RANGE_SERIES_H
+#define STIPPLE_ANALYSIS_REPORT_RANGE_SERIES_H
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "analysis/report/report_input.h"
@@ -24,11 +25,18 @@ std::vector<SingleWait> LongestWaits(const Analysis& analysis, std::size_t most)
 /// Of the `most` functions with most exclusive time.
 std::vector<FunctionSpread> SpreadsOf(const Analysis& analysis, std::size_t most);
 
-/// When others waited for the ranks of `finding.waited_for`, the first few of them.
-std::vector<WaitSeries> WaitSeriesOf(const Analysis& analysis, const Finding& finding);
+/// Likewise, by columns of the run: one scan of the archive.
+FunctionSeries FunctionSeriesOf(const Analysis& analysis, std::size_t most);
 
-/// Seconds that the row's rank waited for the column's, the host last.
-Table WaitMatrixOf(const Trace& trace, const std::vector<Blame>& blames);
+/// All waits of the run, charged.
+std::vector<BlamePiece> AllBlamePiecesOf(const Analysis& analysis);
+
+/// Messages and waits by pair; as fine as pairs are few.
+PairSeries PairSeriesOf(const Analysis& analysis, std::span<const BlamePiece> pieces);
+
+/// When others waited for the ranks of `finding.waited_for`, the first few of them.
+std::vector<WaitSeries> WaitSeriesOf(const Analysis& analysis, const Finding& finding,
+                                     std::span<const BlamePiece> pieces);
 
 }  // namespace stipple
 

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+#include "raytracer/partition/holding.h"
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+#include <utility>
+
+namespace stipple::raytracer {
+
+Holding::Holding(int ranks, std::uint32_t leaves)
+    : ranks_(ranks), holds_(leaves * static_cast<std::size_t>(ranks)), holders_(leaves) {}
+
+void Holding::Give(std::uint32_t leaf, int rank) {
+  holds_[leaf * static_cast<std::size_t>(ranks_) + static_cast<std::size_t>(rank)] = 1;
+  holders_[leaf].push_back(rank);
+}
+
+Holding Holding::Even(int ranks, int each) {
+  Holding holding(ranks, static_cast<std::uint32_t>(ranks));
+  for (int rank = 0; rank < ranks; ++rank)
+    for (int i = 0; i < each; ++i)
+      holding.Give(static_cast<std::uint32_t>((rank + i) % ranks), rank);
+  return holding;
+}
+
+Holding Holding::Dealt(int ranks, std::uint32_t leaves) {
+  Holding holding(ranks, leaves);
+  for (std::uint32_t leaf = 0; leaf < leaves; ++leaf)
+    holding.Give(leaf, static_cast<int>(leaf % static_cast<std::uint32_t>(ranks)));
+  return holding;
+}
+
+namespace {
+
+/// Deals leaves, the one with most work first, each to the rank with least work that has room.
+/// Owners by position in `leaves`; nothing if one finds no room.
+std::optional<std::vector<int>> Deal(int ranks, std::span<const LeafLoad> loads,
+                                     const std::vector<std::uint32_t>& leaves, std::uint64_t room) {
+  std::vector<LeafLoad> of_rank(static_cast<std::size_t>(ranks));
+  std::vector<int> owners;
+  for (const std::uint32_t leaf : leaves) {
+    std::size_t chosen = of_rank.size();
+    for (std::size_t rank = 0; rank < of_rank.size(); ++rank)
+      if (of_rank[rank].bytes + loads[leaf].bytes <= room &&
+          (chosen == of_rank.size() || of_rank[rank].work < of_rank[chosen].work))
+        chosen = rank;
+    if (chosen == of_rank.size()) return std::nullopt;
+    of_rank[chosen].work += loads[leaf].work;
+    of_rank[chosen].bytes += loads[leaf].bytes;
+    owners.push_back(static_cast<int>(chosen));
+  }
+  return owners;
+}
+
+}  // namespace
+
+std::optional<Holding> Holding::Coupled(int ranks, std::span<const LeafLoad> leaves,
+                                        std::uint64_t most_bytes) {
+  std::vector<std::uint32_t> by_heat(leaves.size()), rest(leaves.size());
+  std::iota(by_heat.begin(), by_heat.end(), 0U);
+  rest = by_heat;
+  std::ranges::stable_sort(by_heat, [&](std::uint32_t a, std::uint32_t b) {
+    return leaves[a].work * std::max<std::uint64_t>(leaves[b].bytes, 1) >
+           leaves[b].work * std::max<std::uint64_t>(leaves[a].bytes, 1);
+  });
+  std::ranges::stable_sort(rest, std::ranges::greater(),
+                           [&](std::uint32_t leaf) { return leaves[leaf].work; });
+  std::optional<std::vector<int>> owners = Deal(ranks, leaves, rest, most_bytes);
+  if (!owners) return std::nullopt;
+  Holding holding(ranks, static_cast<std::uint32_t>(leaves.size()));
+  std::uint64_t room = most_bytes;
+  for (const std::uint32_t hot : by_heat) {
+    if (leaves[hot].bytes > room) continue;
+    std::vector<std::uint32_t> others = rest;
+    std::erase(others, hot);
+    auto dealt = Deal(ranks, leaves, others, room - leaves[hot].bytes);
+    if (!dealt) continue;
+    for (int rank = 0; rank < ranks; ++rank) holding.Give(hot, rank);
+    room -= leaves[hot].bytes;
+    rest = std::move(others);
+    owners = std::move(dealt);
+  }
+  for (std::size_t i = 0; i < rest.size(); ++i) holding.Give(rest[i], (*owners)[i]);
+  return holding;
+}
+
+double Holding::Balance(std::span<const LeafLoad> leaves) const {
+  std::vector<std::uint64_t> own(static_cast<std::size_t>(ranks_));
+  std::uint64_t all = 0;
+  for (std::uint32_t leaf = 0; leaf < this->leaves(); ++leaf) {
+    all += leaves[leaf].work;
+    if (holders_[leaf].size() == 1)
+      own[static_cast<std::size_t>(holders_[leaf].front())] += leaves[leaf].work;
+  }
+  if (all == 0) return 1;
+  const double mean = static_cast<double>(all) / ranks_;
+  return std::max(1.0, static_cast<double>(std::ranges::max(own)) / mean);
+}
+
+std::vector<std::uint32_t> Holding::LeavesOf(int rank) const {
+  std::vector<std::uint32_t> leaves;
+  for (std::uint32_t leaf = 0; leaf < this->leaves(); ++leaf)
+    if (Holds(rank, leaf)) leaves.push_back(leaf);
+  return leaves;
+}
+
+int Holding::Next(std::span<const LeafOnWay> way, std::uint32_t spread) const {
+  std::size_t farthest = 0;
+  std::uint32_t equals = 0;
+  const auto follows = [&](int rank) {
+    std::size_t leaves = 0;
+    while (leaves < way.size() && Holds(rank, way[leaves].leaf)) ++leaves;
+    return leaves;
+  };
+  const std::vector<int>& holders = holders_[way.front().leaf];
+  for (const int rank : holders) {
+    const std::size_t leaves = follows(rank);
+    if (leaves > farthest) farthest = leaves, equals = 0;
+    if (leaves == farthest) ++equals;
+  }
+  std::uint32_t chosen = spread % equals;
+  for (const int rank : holders)
+    if (follows(rank) == farthest && chosen-- == 0) return rank;
+  return holders.front();
+}
+
+}  // namespace stipple::raytracer

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+// Which ranks hold the objects of which leaves, and where a ray goes next.
+#ifndef STIPPLE_RAYTRACER_PARTITION_HOLDING_H
+#define STIPPLE_RAYTRACER_PARTITION_HOLDING_H
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "raytracer/partition/object_tree.h"
+
+namespace stipple::raytracer {
+
+/// What a leaf asks of the rank that holds it.
+struct LeafLoad {
+  std::uint64_t work = 0;   // tests in it, as a pilot found them
+  std::uint64_t bytes = 0;  // of its objects, ready for rays
+};
+
+class Holding {
+ public:
+  /// One rank holds one leaf.
+  Holding() : Holding(Even(1, 1)) {}
+  /// The study's partial replication: as many leaves as ranks, and rank r holds `each` of them: r,
+  /// r + 1, ... (after the last comes the first).
+  static Holding Even(int ranks, int each);
+
+  /// Leaves dealt in turn, as many to each rank as they go.
+  static Holding Dealt(int ranks, std::uint32_t leaves);
+  /// The leaves with most work per byte on every rank, as many as leave room for the others, of
+  /// which each is on one rank: work evenly, and nobody holds more than `most_bytes`. Nothing if
+  /// the leaves do not fit at all.
+  static std::optional<Holding> Coupled(int ranks, std::span<const LeafLoad> leaves,
+                                        std::uint64_t most_bytes);
+
+  bool Holds(int rank, std::uint32_t leaf) const {
+    return holds_[leaf * static_cast<std::size_t>(ranks_) + static_cast<std::size_t>(rank)] != 0;
+  }
+  std::vector<std::uint32_t> LeavesOf(int rank) const;
+  /// The work of the rank with most over the mean, if work in leaves that all hold goes to who has
+  /// least.
+  double Balance(std::span<const LeafLoad> leaves) const;
+  int ranks() const { return ranks_; }
+  std::uint32_t leaves() const { return static_cast<std::uint32_t>(holders_.size()); }
+
+  /// The rank that a ray goes to, of those that hold the first of `way`: one that can follow it
+  /// through as many leaves as any. Where several can, `spread`, any number, chooses.
+  int Next(std::span<const LeafOnWay> way, std::uint32_t spread) const;
+
+ private:
+  Holding(int ranks, std::uint32_t leaves);
+  void Give(std::uint32_t leaf, int rank);
+
+  int ranks_;
+  std::vector<std::uint8_t> holds_;        // by leaf and rank
+  std::vector<std::vector<int>> holders_;  // by leaf
+};
+
+}  // namespace stipple::raytracer
+
+#endif

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+// The object partition: a tree of planes that cuts the scene's box into cells, the leaves, about
+// half of the objects to each side of a plane. An object that lies across a plane belongs to both
+// sides. Every rank holds the planes (the tree's body); the objects of a leaf only those ranks that
+// holding.h names.
+//
+// A ray meets leaves in an order that every rank computes alike, so a ray on its way from rank to
+// rank need only remember how many of them it has seen.
+#ifndef STIPPLE_RAYTRACER_PARTITION_OBJECT_TREE_H
+#define STIPPLE_RAYTRACER_PARTITION_OBJECT_TREE_H
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "raytracer/geometry/bounds.h"
+
+namespace stipple::raytracer {
+
+/// A leaf on a ray's way. What the ray meets in it is not nearer than `enter`.
+struct LeafOnWay {
+  std::uint32_t leaf = 0;
+  double enter = 0;
+};
+
+class ObjectTree {
+ public:
+  /// Without objects, in one leaf.
+  ObjectTree() : ObjectTree({}, 1) {}
+  /// `boxes`: of the objects, by number. At least one leaf. Of the same boxes every rank makes the
+  /// same tree.
+  ObjectTree(std::span<const Bounds> boxes, std::uint32_t leaves);
+
+  std::uint32_t leaves() const { return static_cast<std::uint32_t>(objects_.size()); }
+  /// Numbers of the objects that reach into a leaf, ascending.
+  const std::vector<std::uint32_t>& ObjectsIn(std::uint32_t leaf) const { return objects_[leaf]; }
+  /// The leaf's part of the scene's box.
+  const Bounds& CellOf(std::uint32_t leaf) const { return cells_[leaf]; }
+
+  /// Replaces `way` by the leaves that the ray meets, the nearest first; by none if it misses the
+  /// scene. An object that the ray meets in a leaf's cell lies in one of them, whatever the
+  /// rounding; `rounding`: relative error of the ray's arithmetic.
+  void Along(const Ray<double>& ray, double rounding, std::vector<LeafOnWay>& way) const;
+
+ private:
+  /// A plane: leaves and planes below it and above. Links: >= 0 a plane, else ~leaf.
+  struct Plane {
+    int axis;
+    double at;
+    std::int32_t below, above;
+  };
+
+  /// What is still to be looked at of a ray: its distances `from` to `to`, below a link.
+  struct Part {
+    std::int32_t link;
+    double from, to;
+  };
+
+  static bool Cross(const Plane& plane, const Ray<double>& ray, double margin, double slack,
+                    Part& now, Part& later);
+  std::int32_t Split(std::span<const Bounds> boxes, std::vector<std::uint32_t> numbers,
+                     const Bounds& cell, std::uint32_t leaves);
+
+  Bounds scene_;
+  std::vector<Plane> planes_;
+  std::int32_t root_ = ~0;
+  std::vector<std::vector<std::uint32_t>> objects_;  // by leaf
+  std::vector<Bounds> cells_;
+};
+
+}  // namespace stipple::raytracer
+
+#endif

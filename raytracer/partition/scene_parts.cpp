@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+#include "raytracer/partition/scene_parts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "raytracer/render/marks.h"
+#include "raytracer/scene/memory_need.h"
+#include "raytracer/scene/node_memory.h"
+#include "raytracer/scene/patches.h"
+#include "raytracer/stopwatch.h"
+
+namespace stipple::raytracer {
+namespace {
+
+std::vector<Bounds> BoxesOf(const Shapes& shapes) {
+  std::vector<Bounds> boxes;
+  boxes.reserve(shapes.objects.size());
+  for (const Object& object : shapes.objects) boxes.push_back(BoundsOf(shapes, object));
+  return boxes;
+}
+
+/// Bytes that the rank with most takes.
+std::uint64_t MostBytes(const Holding& holding, const std::vector<std::uint64_t>& of_leaf) {
+  std::uint64_t most = 0;
+  for (int rank = 0; rank < holding.ranks(); ++rank) {
+    std::uint64_t bytes = 0;
+    for (const std::uint32_t leaf : holding.LeavesOf(rank)) bytes += of_leaf[leaf];
+    most = std::max(most, bytes);
+  }
+  return most;
+}
+
+/// Who holds what: as chosen, else as many leaves each as fit.
+Holding Divide(const Shapes& shapes, const ObjectTree& tree, const Division& division,
+               std::uint64_t allowed) {
+  std::vector<std::uint64_t> bytes;
+  for (std::uint32_t leaf = 0; leaf < tree.leaves(); ++leaf)
+    bytes.push_back(BytesToBuild(shapes, tree.ObjectsIn(leaf)));
+  const int ranks = division.holders;
+  int each = 1;
+  if (division.replicate > 0)
+    each = std::clamp(static_cast<int>(std::lround(division.replicate * ranks)), 1, ranks);
+  else if (division.fill)
+    while (each < ranks && MostBytes(Holding::Even(ranks, each + 1), bytes) <= allowed) ++each;
+  Holding holding = Holding::Even(ranks, each);
+  RequireMemory(MostBytes(holding, bytes), allowed,
+                fmt::format("divided among {} ranks, {} {} each, the objects of one take", ranks,
+                            each, each == 1 ? "leaf" : "leaves"));
+  return holding;
+}
+
+template <class Real>
+std::unique_ptr<LeafPart<Real>> BuildLeaf(const Shapes& shapes,
+                                          const std::vector<std::uint32_t>& numbers,
+                                          const std::string& kernel) {
+  auto part = std::make_unique<LeafPart<Real>>();
+  part->model = BuildModel<Real>(SubsetOf(shapes, numbers), HierarchyFor(kernel));
+  part->numbers = numbers;
+  part->kernel = MakeKernel(kernel, part->model);
+  return part;
+}
+
+/// Leaves of a coupled scene on each rank: fine enough to deal work evenly, few enough that a ray
+/// does not meet a new one all the time.
+constexpr int kCoupledLeaves = 4;
+
+template <class Real>
+void Build(const Shapes& shapes, const std::string& kernel, int rank, SceneParts<Real>& parts) {
+  parts.held.resize(parts.tree.leaves());
+  parts.model_bytes = 0;
+  for (std::uint32_t leaf = 0; leaf < parts.tree.leaves(); ++leaf) {
+    std::unique_ptr<LeafPart<Real>>& held = parts.held[leaf];
+    if (rank >= parts.holding.ranks() || !parts.holding.Holds(rank, leaf)) {
+      held.reset();
+      continue;
+    }
+    if (!held) held = BuildLeaf<Real>(shapes, parts.tree.ObjectsIn(leaf), kernel);
+    parts.rounding = held->kernel->Rounding();
+    held->model.ForEachArray(
+        [&](const auto& array) { parts.model_bytes += array.size() * sizeof(array[0]); });
+  }
+}
+
+}  // namespace
+
+/// Bytes that one rank may take, of what its node has.
+std::uint64_t AllowedBytes(const World& world, const SceneChoice& choice) {
+  if (choice.memory_limit > 0) return choice.memory_limit;
+  const Node node(world.comm);
+  return AvailableBytes() / static_cast<std::uint64_t>(node.size());
+}
+
+template <class Real>
+SceneParts<Real> PartsForAll(const World& world, const SceneChoice& choice,
+                             const std::string& kernel, Division division) {
+  SceneParts<Real> parts;
+  Stopwatch watch;
+  Mark(Moment::kLoadBegins);
+  parts.scene = OnAllRanks(world, [&] {
+    Scene scene = LoadScene(choice);
+    AdaptPatches(scene, choice.patches);
+    return scene;
+  });
+  parts.load_s = watch.Lap();
+  watch.LapCpu();
+  Mark(Moment::kBuildBegins);
+  const std::uint64_t allowed = AllowedBytes(world, choice);
+  OnAllRanks(world, [&] {
+    const Shapes& shapes = parts.scene.shapes;
+    for (const Object& object : shapes.objects)
+      ++parts.count[static_cast<std::size_t>(object.kind)];
+    const int leaves = division.holders * (division.coupled ? kCoupledLeaves : 1);
+    parts.tree = ObjectTree(BoxesOf(shapes), static_cast<std::uint32_t>(leaves));
+    for (std::uint32_t leaf = 0; leaf < parts.tree.leaves(); ++leaf)
+      parts.copies += parts.tree.ObjectsIn(leaf).size();
+    parts.holding = division.coupled ? Holding::Dealt(division.holders, parts.tree.leaves())
+                                     : Divide(shapes, parts.tree, division, allowed);
+    Build(shapes, kernel, world.rank, parts);
+    if (!division.coupled) parts.scene.shapes = {};
+    return true;
+  });
+  parts.build_s = watch.Lap();
+  parts.build_cpu_s = watch.LapCpu();
+  return parts;
+}
+
+template <class Real>
+std::vector<LeafLoad> LoadsOf(const SceneParts<Real>& parts) {
+  std::vector<LeafLoad> loads(parts.tree.leaves());
+  for (std::uint32_t leaf = 0; leaf < parts.tree.leaves(); ++leaf)
+    loads[leaf].bytes = BytesToBuild(parts.scene.shapes, parts.tree.ObjectsIn(leaf));
+  return loads;
+}
+
+template <class Real>
+std::uint64_t WholeBytes(const SceneParts<Real>& parts) {
+  std::vector<std::uint32_t> all(parts.scene.shapes.objects.size());
+  std::iota(all.begin(), all.end(), 0U);
+  return BytesToBuild(parts.scene.shapes, all);
+}
+
+template <class Real>
+void Hold(const World& world, Holding holding, const std::string& kernel, SceneParts<Real>& parts) {
+  parts.holding = std::move(holding);
+  OnAllRanks(world, [&] {
+    Build(std::exchange(parts.scene.shapes, {}), kernel, world.rank, parts);
+    return true;
+  });
+}
+
+template SceneParts<float> PartsForAll(const World&, const SceneChoice&, const std::string&,
+                                       Division);
+template SceneParts<double> PartsForAll(const World&, const SceneChoice&, const std::string&,
+                                        Division);
+
+template std::vector<LeafLoad> LoadsOf(const SceneParts<float>&);
+template std::vector<LeafLoad> LoadsOf(const SceneParts<double>&);
+template std::uint64_t WholeBytes(const SceneParts<float>&);
+template std::uint64_t WholeBytes(const SceneParts<double>&);
+template void Hold(const World&, Holding, const std::string&, SceneParts<float>&);
+template void Hold(const World&, Holding, const std::string&, SceneParts<double>&);
+
+}  // namespace stipple::raytracer

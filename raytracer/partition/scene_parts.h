@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+// A divided scene, as one rank has it: the tree's body, and the objects of the leaves that it
+// holds.
+#ifndef STIPPLE_RAYTRACER_PARTITION_SCENE_PARTS_H
+#define STIPPLE_RAYTRACER_PARTITION_SCENE_PARTS_H
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "raytracer/geometry/kernel.h"
+#include "raytracer/partition/holding.h"
+#include "raytracer/partition/object_tree.h"
+#include "raytracer/render/world.h"
+#include "raytracer/scene/load.h"
+
+namespace stipple::raytracer {
+
+/// The objects of one leaf, ready for rays.
+template <class Real>
+struct LeafPart {
+  Model<Real> model;
+  std::vector<std::uint32_t> numbers;  // in the scene, by number in the model; ascending
+  std::unique_ptr<Kernel<Real>> kernel;
+};
+
+template <class Real>
+struct SceneParts {
+  Scene scene;  // without shapes, but those that Hold still needs
+  ObjectTree tree;
+  Holding holding;
+  std::vector<std::unique_ptr<LeafPart<Real>>> held;  // by leaf; null: others hold it
+  Real rounding = 0;                                  // of distances that kernels find
+  std::array<std::uint64_t, kShapeKinds> count{};     // objects of the whole scene, by kind
+  std::uint64_t copies =
+      0;  // objects in all leaves together; more than `objects`, as some lie in several
+  std::uint64_t model_bytes = 0;  // of what this rank holds
+  double load_s = 0, build_s = 0, build_cpu_s = 0;
+};
+
+/// What is held by whom.
+struct Division {
+  int holders = 1;       // ranks 0 to holders - 1 hold objects
+  double replicate = 0;  // share of the leaves that each holds; 0: one leaf each
+  bool fill = false;     // instead: as many leaves each as fit into memory
+  bool coupled = false;  // several leaves for each rank, dealt in turn; Hold will change that
+};
+
+/// The chosen scene, divided. Every rank calls it. Errors: StoppedTogether.
+template <class Real>
+SceneParts<Real> PartsForAll(const World& world, const SceneChoice& choice,
+                             const std::string& kernel, Division division);
+
+/// What each leaf of a scene takes; its work is 0. Before Hold.
+template <class Real>
+std::vector<LeafLoad> LoadsOf(const SceneParts<Real>& parts);
+
+/// What the whole scene takes, each object once. Before Hold.
+template <class Real>
+std::uint64_t WholeBytes(const SceneParts<Real>& parts);
+
+/// Bytes that this rank may take for objects. Every rank calls it.
+std::uint64_t AllowedBytes(const World& world, const SceneChoice& choice);
+
+/// Another division of a coupled scene's leaves: every rank builds what it lacks, and lets go of
+/// what others hold now.
+template <class Real>
+void Hold(const World& world, Holding holding, const std::string& kernel, SceneParts<Real>& parts);
+
+}  // namespace stipple::raytracer
+
+#endif

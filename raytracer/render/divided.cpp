@@ -1,0 +1,432 @@
+// SPDX-License-Identifier: MIT
+#include "raytracer/render/divided.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdio>
+#include <deque>
+#include <numeric>
+
+#include "raytracer/partition/find_row.h"
+#include "raytracer/partition/termination.h"
+#include "raytracer/render/found_parts.h"
+#include "raytracer/render/mail.h"
+#include "raytracer/render/marks.h"
+#include "raytracer/render/point_supply.h"
+#include "raytracer/render/progress.h"
+
+namespace stipple::raytracer {
+namespace {
+
+enum Tag : int {
+  kRays = 10,  // Traveller<Real>s
+  kCredit,     // packages of the receiver's that were worked off: std::uint32_t
+  kFound,      // FoundParts, to the assembling rank
+  kLast,       // the sender has found all it will
+  kSignal,     // DetectorSignal
+  kEnd,        // all is done, down the tree
+  kAsk,        // for a bundle, to the host
+  kGiven       // its number
+};
+
+// Packages that one rank may send to another before the first of them is worked off. Half of them
+// are acknowledged at a time.
+constexpr std::uint32_t kCredits = 8;
+
+// Rays between two looks for letters.
+constexpr int kRaysPerLook = 16;
+
+/// Detectors by number: each sees its own signals only.
+struct DetectorSignal {
+  std::int32_t detector;
+  Signal signal;
+};
+
+/// The picture, on the rank that has it.
+class Assembly {
+ public:
+  explicit Assembly(const PartitionChoice& choice) : raster_(PointCount(choice.raster)) {}
+
+  void Take(const std::vector<FoundPart>& parts) {
+    for (const FoundPart& part : parts) Merge(part.result, raster_[part.point]);
+  }
+  Raster TakeRaster() { return std::move(raster_); }
+  int finished = 0;  // ranks that have sent all
+
+ private:
+  Raster raster_;
+};
+
+/// Rays that wait to be followed, the deepest first; rays to lights before all, as nothing comes of
+/// them.
+template <class Real>
+class RayQueue {
+ public:
+  struct Waiting {
+    Traveller<Real> ray;
+    int from;  // rank that sent it, or -1
+  };
+
+  void Push(const Traveller<Real>& ray, int from) {
+    const std::size_t depth = ray.to_light ? kDeepest + 1 : ray.depth;
+    by_depth_[depth].push_back({ray, from});
+    deepest_ = std::max(deepest_, depth);
+    ++size_;
+  }
+  Waiting Pop() {
+    while (by_depth_[deepest_].empty()) --deepest_;
+    const Waiting waiting = by_depth_[deepest_].back();
+    by_depth_[deepest_].pop_back();
+    --size_;
+    return waiting;
+  }
+  std::size_t size() const { return size_; }
+
+ private:
+  std::array<std::vector<Waiting>, kDeepest + 2> by_depth_;
+  std::size_t deepest_ = 0, size_ = 0;
+};
+
+/// What lies between this rank and one other.
+template <class Real>
+struct Neighbour {
+  std::vector<Traveller<Real>> outgoing;
+  std::uint32_t credits = kCredits;
+  std::uint64_t sent = 0;            // packages to it
+  std::deque<std::size_t> packages;  // of it, not worked off: rays
+  std::size_t followed = 0;          // rays of the first of them
+  std::uint32_t worked_off = 0;      // packages that it has not been told of
+};
+
+template <class Real>
+class Worker {
+ public:
+  Worker(const World& world, Mail& mail, RankTracer<Real>& tracer, const DividedChoice& choice)
+      : world_(world),
+        mail_(mail),
+        tracer_(tracer),
+        choice_(choice),
+        row_(FindRow(kRayPartitions, choice.partition)),
+        assembling_(AssemblingRank(world, choice.partition)),
+        supply_(world, mail, row_, choice.points, kAsk),
+        neighbours_(static_cast<std::size_t>(choice.holders)),
+        four_counters_(world.rank, choice.holders),
+        safra_(world.rank, choice.holders),
+        progress_(PointCount(choice.points.raster) / static_cast<std::size_t>(choice.holders),
+                  world.rank == 0) {
+    if (world.rank == assembling_) assembly_.emplace(choice.points);
+  }
+
+  void Run() {
+    int until_look = 0;
+    while (!ended_) {
+      if (until_look-- == 0) {
+        while (TakeLetter(false)) {
+        }
+        until_look = kRaysPerLook;
+      }
+      if (FollowOne() || BeginPoint()) continue;
+      SendRest();
+      Detect([this](auto& detector, const RankState& state, Signals& out) {
+        detector.Advance(state, out);
+      });
+      if (!ended_ && !HasWork()) TakeLetter(true);
+      until_look = 0;
+    }
+    Finish();
+  }
+
+  Raster TakeRaster() { return assembly_ ? assembly_->TakeRaster() : Raster(); }
+  const TravelCounts& travel() const { return travel_; }
+
+ private:
+  bool HasWork() const { return queue_.size() > 0 || supply_.left() > 0; }
+
+  /// False if there is no ray here.
+  bool FollowOne() {
+    if (queue_.size() == 0) return false;
+    auto [ray, from] = queue_.Pop();
+    more_.clear();
+    RayResult found;
+    const RasterPoint point = ray.point;
+    const int next = tracer_.Advance(ray, more_, found);
+    if (next != RankTracer<Real>::kEnded) Forward(ray, next);
+    for (const Traveller<Real>& one : more_) queue_.Push(one, -1);
+    travel_.most_held = std::max<std::uint64_t>(travel_.most_held, queue_.size());
+    Keep(point, found);
+    if (from >= 0) Acknowledge(from);
+    return true;
+  }
+
+  bool BeginPoint() {
+    const std::optional<RasterPoint> point = supply_.Next();
+    if (!point) return false;
+    RayResult found;
+    more_.clear();
+    tracer_.Begin(*point, more_, found);
+    for (const Traveller<Real>& ray : more_) queue_.Push(ray, -1);
+    Keep(*point, found);
+    progress_.Advance(1);
+    if (supply_.left() == 0) RecordCounts(tracer_.counts());
+    return true;
+  }
+
+  void Forward(const Traveller<Real>& ray, int to) {
+    Neighbour<Real>& neighbour = neighbours_[static_cast<std::size_t>(to)];
+    neighbour.outgoing.push_back(ray);
+    if (neighbour.outgoing.size() >= choice_.package) SendPackage(to);
+  }
+
+  /// As many rays as fit into a package; false if the receiver has enough.
+  bool SendPackage(int to) {
+    Neighbour<Real>& neighbour = neighbours_[static_cast<std::size_t>(to)];
+    if (neighbour.credits == 0) return false;
+    --neighbour.credits;
+    ++neighbour.sent;
+    std::vector<Traveller<Real>>& rays = neighbour.outgoing;
+    const std::size_t count = std::min(rays.size(), choice_.package);
+    const auto first = rays.end() - static_cast<std::ptrdiff_t>(count);
+    mail_.Post(to, kRays, std::span<const Traveller<Real>>(first, rays.end()));
+    rays.erase(first, rays.end());
+    ++travel_.packages_sent;
+    travel_.rays_sent += count;
+    return true;
+  }
+
+  /// Packages that are not full, too: nothing else will come to fill them.
+  void SendRest() {
+    for (int to = 0; to < choice_.holders; ++to)
+      while (!neighbours_[static_cast<std::size_t>(to)].outgoing.empty() && SendPackage(to)) {
+      }
+  }
+
+  void Acknowledge(int from) {
+    Neighbour<Real>& neighbour = neighbours_[static_cast<std::size_t>(from)];
+    if (++neighbour.followed < neighbour.packages.front()) return;
+    neighbour.followed = 0;
+    neighbour.packages.pop_front();
+    if (++neighbour.worked_off < kCredits / 2) return;
+    mail_.Post(from, kCredit, neighbour.worked_off);
+    neighbour.worked_off = 0;
+  }
+
+  void Keep(RasterPoint point, const RayResult& found) {
+    found_.Add(point, found);
+    if (found_.full()) SendFound();
+  }
+  void SendFound() {
+    if (assembly_)
+      assembly_->Take(found_.parts());
+    else if (!found_.empty())
+      mail_.Post(assembling_, kFound, std::span<const FoundPart>(found_.parts()));
+    found_.Clear();
+  }
+
+  RankState State() const {
+    RankState state{!HasWork() && supply_.ended(), 0, 0};
+    for (const Neighbour<Real>& neighbour : neighbours_)
+      if (!neighbour.outgoing.empty()) state.passive = false;
+    state.sent = static_cast<std::int64_t>(travel_.packages_sent);
+    state.received = static_cast<std::int64_t>(packages_received_);
+    return state;
+  }
+
+  template <class Do>
+  void Detect(Do what) {
+    const auto detect = [&](std::int32_t number, auto& detector) {
+      Signals out;
+      what(detector, State(), out);
+      for (const Signal& signal : out)
+        mail_.Post(signal.to, kSignal, DetectorSignal{number, signal});
+    };
+    detect(0, four_counters_);
+    detect(1, safra_);
+    if (world_.rank == 0 && four_counters_.ended() && safra_.ended()) End();
+  }
+
+  void End() {
+    if (ended_) return;
+    for (int child = 2 * world_.rank + 1; child <= 2 * world_.rank + 2; ++child)
+      if (child < choice_.holders) mail_.Post(child, kEnd, std::span<const std::byte>());
+    ended_ = true;
+    if (!State().passive) StopAll("work is left although its end was found");
+  }
+
+  [[noreturn]] void StopAll(std::string_view problem) const {
+    fmt::print(stderr, "raytracer: rank {}: {}; this is a bug\n", world_.rank, problem);
+    MPI_Abort(world_.comm, 3);
+    std::abort();
+  }
+
+  bool TakeLetter(bool wait) {
+    Letter letter;
+    if (!mail_.Take(wait, letter)) return false;
+    switch (static_cast<Tag>(letter.tag)) {
+      case kRays:
+        TakeRays(letter);
+        break;
+      case kCredit: {
+        Neighbour<Real>& neighbour = neighbours_[static_cast<std::size_t>(letter.from)];
+        neighbour.credits += letter.Of<std::uint32_t>().front();
+        while (neighbour.outgoing.size() >= choice_.package && SendPackage(letter.from)) {
+        }
+        break;
+      }
+      case kFound:
+        assembly_->Take(letter.Of<FoundPart>());
+        break;
+      case kLast:
+        ++assembly_->finished;
+        break;
+      case kSignal:
+        TakeSignal(letter.Of<DetectorSignal>().front());
+        break;
+      case kEnd:
+        End();
+        break;
+      case kGiven:
+        supply_.Given(letter.Of<std::uint32_t>().front());
+        break;
+      case kAsk:
+        break;  // only the host is asked
+    }
+    return true;
+  }
+
+  void TakeRays(const Letter& letter) {
+    const std::vector<Traveller<Real>> rays = letter.Of<Traveller<Real>>();
+    if (ended_) StopAll("rays came after their end was found");
+    for (const Traveller<Real>& ray : rays) queue_.Push(ray, letter.from);
+    neighbours_[static_cast<std::size_t>(letter.from)].packages.push_back(rays.size());
+    ++packages_received_;
+    travel_.rays_received += rays.size();
+    travel_.most_held = std::max<std::uint64_t>(travel_.most_held, queue_.size());
+    RecordTravel(queue_.size(), travel_.rays_received, travel_.rays_sent);
+  }
+
+  void TakeSignal(const DetectorSignal& signal) {
+    Signals out;
+    const RankState state = State();
+    if (signal.detector == 0)
+      four_counters_.Receive(signal.signal, state, out);
+    else
+      safra_.Receive(signal.signal, state, out);
+    for (const Signal& one : out) mail_.Post(one.to, kSignal, DetectorSignal{signal.detector, one});
+    if (world_.rank == 0 && four_counters_.ended() && safra_.ended()) End();
+  }
+
+  /// What was found goes to the assembling rank; that waits for all.
+  void Finish() {
+    SendFound();
+    RecordCounts(tracer_.counts());
+    if (!assembly_) {
+      mail_.Post(assembling_, kLast, std::span<const std::byte>());
+    } else {
+      Mark(Moment::kAssembleBegins);
+      while (assembly_->finished < choice_.holders - 1) TakeLetter(true);
+    }
+    while (!HasAllCredits()) TakeLetter(true);  // no letter may be left
+  }
+  bool HasAllCredits() const {
+    return std::ranges::all_of(neighbours_, [](const Neighbour<Real>& neighbour) {
+      return neighbour.credits == kCredits - neighbour.sent % (kCredits / 2);
+    });
+  }
+
+  const World& world_;
+  Mail& mail_;
+  RankTracer<Real>& tracer_;
+  const DividedChoice& choice_;
+  const RayPartitionEntry& row_;
+  int assembling_;
+  PointSupply supply_;
+  RayQueue<Real> queue_;
+  std::vector<Neighbour<Real>> neighbours_;
+  std::vector<Traveller<Real>> more_;
+  FoundParts found_;
+  std::optional<Assembly> assembly_;
+  TravelCounts travel_;
+  std::uint64_t packages_received_ = 0;
+  FourCounters four_counters_;
+  Safra safra_;
+  bool ended_ = false;
+  Progress progress_;
+};
+
+/// The bundles that the host still has.
+class BundlesLeft {
+ public:
+  BundlesLeft(const DividedChoice& choice, std::uint32_t count) : choice_(choice), left_(count) {
+    std::iota(left_.begin(), left_.end(), 0U);
+  }
+
+  std::size_t count() const { return left_.size(); }
+  /// One for `rank`: the first that begins in what it holds, else the first of all.
+  std::uint32_t Take(int rank) {
+    auto chosen = left_.begin();
+    if (!choice_.homes.empty()) {
+      const auto near = std::ranges::find_if(left_, [&](std::uint32_t bundle) {
+        const std::uint32_t leaf = choice_.homes[bundle];
+        return leaf != DividedChoice::kNowhere && choice_.holding->Holds(rank, leaf);
+      });
+      if (near != left_.end()) chosen = near;
+    }
+    const std::uint32_t bundle = *chosen;
+    left_.erase(chosen);
+    return bundle;
+  }
+
+ private:
+  const DividedChoice& choice_;
+  std::deque<std::uint32_t> left_;  // in their order
+};
+
+/// The host: bundles out, what was found in.
+[[gnu::noinline]] Raster Serve(Mail& mail, const DividedChoice& choice) {
+  MarkHost();
+  BundlesLeft left(choice, Bundles(choice.points).count());
+  Assembly assembly(choice.points);
+  while (assembly.finished < choice.holders) {
+    Letter letter;
+    mail.Take(true, letter);
+    if (letter.tag == kAsk) {
+      const bool some = left.count() > 0;
+      mail.Post(letter.from, kGiven, some ? left.Take(letter.from) : PointSupply::kNoBundle);
+      if (!some) continue;
+      RecordBundlesLeft(static_cast<std::uint32_t>(left.count()));
+      if (left.count() == 0) Mark(Moment::kSupplyEnds);
+    } else if (letter.tag == kFound) {
+      assembly.Take(letter.Of<FoundPart>());
+    } else if (letter.tag == kLast) {
+      ++assembly.finished;
+    }
+  }
+  return assembly.TakeRaster();
+}
+
+}  // namespace
+
+template <class Real>
+DividedRender RenderDivided(const World& world, RankTracer<Real>* tracer,
+                            const DividedChoice& choice) {
+  Mark(Moment::kRenderBegins);
+  DividedRender divided;
+  Mail mail(world);
+  if (tracer == nullptr) {
+    divided.rendered.raster = Serve(mail, choice);
+  } else {
+    Worker<Real> worker(world, mail, *tracer, choice);
+    worker.Run();
+    divided.rendered.raster = worker.TakeRaster();
+    divided.rendered.counts = tracer->counts();
+    divided.travel = worker.travel();
+  }
+  divided.rendered.messages = mail.posted();
+  return divided;
+}
+
+template DividedRender RenderDivided(const World&, RankTracer<float>*, const DividedChoice&);
+template DividedRender RenderDivided(const World&, RankTracer<double>*, const DividedChoice&);
+
+}  // namespace stipple::raytracer

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+#include "raytracer/partition/object_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <set>
+
+#include "raytracer/partition/holding.h"
+
+namespace stipple::raytracer {
+namespace {
+
+constexpr double kRounding = std::numeric_limits<double>::epsilon();
+
+class Dice {
+ public:
+  explicit Dice(std::uint64_t seed) : random_(seed) {}
+  double In(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random_);
+  }
+  Vec3 Point(double size) { return {In(-size, size), In(-size, size), In(-size, size)}; }
+  /// Often along an axis, where planes are parallel to it.
+  Vec3 Direction() {
+    const double kind = In(0, 1);
+    if (kind < 0.1) return {0, In(0, 1) < 0.5 ? 1.0 : -1.0, 0};
+    if (kind < 0.2) return Normalized(Vec3{In(-1, 1), 0, In(-1, 1)});
+    return Normalized(Point(1));
+  }
+
+ private:
+  std::mt19937_64 random_;
+};
+
+std::vector<Bounds> SmallBoxes(std::size_t count, std::uint64_t seed) {
+  Dice dice(seed);
+  std::vector<Bounds> boxes;
+  for (std::size_t i = 0; i < count; ++i) {
+    Bounds box;
+    box.Include(dice.Point(10));
+    box.Include(box.low + Vec3{dice.In(0, 1), dice.In(0, 1), i % 7 == 0 ? 0 : dice.In(0, 1)});
+    boxes.push_back(box);
+  }
+  return boxes;
+}
+
+TEST(ObjectTree, EachObjectLiesInEveryLeafWhoseCellItReachesInto) {
+  const std::vector<Bounds> boxes = SmallBoxes(500, 1);
+  for (const std::uint32_t leaves : {1U, 2U, 3U, 8U, 32U, 100U}) {
+    const ObjectTree tree(boxes, leaves);
+    ASSERT_EQ(tree.leaves(), leaves);
+    for (std::uint32_t leaf = 0; leaf < leaves; ++leaf) {
+      const Bounds& cell = tree.CellOf(leaf);
+      const std::set<std::uint32_t> in(tree.ObjectsIn(leaf).begin(), tree.ObjectsIn(leaf).end());
+      EXPECT_TRUE(std::ranges::is_sorted(tree.ObjectsIn(leaf)));
+      for (std::uint32_t number = 0; number < boxes.size(); ++number) {
+        const Vec3 low = Max(boxes[number].low, cell.low),
+                   high = Min(boxes[number].high, cell.high);
+        if (low.x < high.x && low.y < high.y && low.z < high.z) {
+          EXPECT_TRUE(in.contains(number)) << leaf << ' ' << number;
+        }
+      }
+    }
+  }
+}
+
+TEST(ObjectTree, LeavesHoldAboutTheSameNumberOfObjects) {
+  const std::vector<Bounds> boxes = SmallBoxes(5000, 2);
+  for (const std::uint32_t leaves : {2U, 5U, 8U, 32U}) {
+    const ObjectTree tree(boxes, leaves);
+    std::size_t most = 0;
+    for (std::uint32_t leaf = 0; leaf < leaves; ++leaf)
+      most = std::max(most, tree.ObjectsIn(leaf).size());
+    EXPECT_LT(static_cast<double>(most), 2.0 * 5000 / leaves) << leaves;
+  }
+}
+
+// What makes the picture that of the serial program.
+TEST(ObjectTree, WhateverARayMeetsLiesInALeafOnItsWay) {
+  const std::vector<Bounds> boxes = SmallBoxes(300, 3);
+  Dice dice(4);
+  std::vector<LeafOnWay> way;
+  for (const std::uint32_t leaves : {1U, 2U, 7U, 32U}) {
+    const ObjectTree tree(boxes, leaves);
+    for (int i = 0; i < 20000; ++i) {
+      Ray<double> ray{dice.Point(12), dice.Direction()};
+      if (i % 3 == 0) ray.origin = boxes[static_cast<std::size_t>(i) % boxes.size()].low;
+      tree.Along(ray, kRounding, way);
+      for (std::size_t at = 1; at < way.size(); ++at) EXPECT_LE(way[at - 1].enter, way[at].enter);
+      for (std::uint32_t number = 0; number < boxes.size(); ++number) {
+        const double meets = EnterBounds(boxes[number], SlabRay(ray, 1), 1e30);
+        if (std::isinf(meets)) continue;
+        const bool found = std::ranges::any_of(way, [&](const LeafOnWay& on_way) {
+          return on_way.enter <= meets &&
+                 std::ranges::binary_search(tree.ObjectsIn(on_way.leaf), number);
+        });
+        EXPECT_TRUE(found) << leaves << ' ' << i << ' ' << number;
+      }
+    }
+  }
+}
+
+TEST(ObjectTree, NothingAndOneEnormousObject) {
+  std::vector<LeafOnWay> way;
+  ObjectTree({}, 8).Along({{0, 0, 0}, {0, 0, 1}}, kRounding, way);
+  EXPECT_TRUE(way.empty());
+  std::vector<Bounds> boxes = SmallBoxes(50, 5);
+  boxes.push_back({{-1e6, -1e6, -1e6}, {1e6, 1e6, 1e6}});
+  const ObjectTree tree(boxes, 8);
+  for (std::uint32_t leaf = 0; leaf < 8; ++leaf)
+    EXPECT_EQ(std::ranges::count(tree.ObjectsIn(leaf), 50U), 1);
+}
+
+TEST(ObjectTree, ObjectsInOnePlaceStillGiveAsManyLeaves) {
+  const std::vector<Bounds> boxes(20, Bounds{{1, 1, 1}, {2, 2, 2}});
+  const ObjectTree tree(boxes, 8);
+  std::vector<LeafOnWay> way;
+  tree.Along({{0, 1.5, 1.5}, {1, 0, 0}}, kRounding, way);
+  EXPECT_FALSE(way.empty());
+}
+
+TEST(Holding, EvenReplicationIsTheStudys) {
+  for (const int ranks : {1, 2, 5, 8})
+    for (int each = 1; each <= ranks; ++each) {
+      const Holding holding = Holding::Even(ranks, each);
+      for (int rank = 0; rank < ranks; ++rank)
+        EXPECT_EQ(holding.LeavesOf(rank).size(), static_cast<std::size_t>(each));
+      const std::vector<LeafOnWay> way{{0, 0}, {static_cast<std::uint32_t>(ranks - 1), 1}};
+      for (std::uint32_t spread = 0; spread < 20; ++spread)
+        EXPECT_TRUE(holding.Holds(holding.Next(way, spread), 0));
+    }
+}
+
+TEST(Holding, ARayGoesToWhoCanFollowItFarthest) {
+  const Holding holding = Holding::Even(8, 3);  // rank r holds r, r + 1, r + 2
+  EXPECT_EQ(holding.Next(std::vector<LeafOnWay>{{2, 0}, {3, 1}, {4, 2}}, 5), 2);
+  EXPECT_EQ(holding.Next(std::vector<LeafOnWay>{{2, 0}, {0, 1}}, 1), 0);
+}
+
+std::vector<LeafLoad> SomeLoads(std::size_t count) {
+  Dice dice(6);
+  std::vector<LeafLoad> loads;
+  for (std::size_t i = 0; i < count; ++i)
+    loads.push_back({static_cast<std::uint64_t>(dice.In(0, 1) < 0.1 ? 10000 : dice.In(0, 1000)),
+                     static_cast<std::uint64_t>(dice.In(50, 150))});
+  return loads;
+}
+
+TEST(Holding, CoupledHoldsEachLeafWithinTheLimit) {
+  const std::vector<LeafLoad> loads = SomeLoads(32);
+  std::uint64_t all = 0;
+  for (const LeafLoad& load : loads) all += load.bytes;
+  for (const double share : {0.2, 0.3, 0.5, 0.75, 1.0}) {
+    const auto most = static_cast<std::uint64_t>(share * static_cast<double>(all));
+    const std::optional<Holding> holding = Holding::Coupled(8, loads, most);
+    ASSERT_TRUE(holding);
+    for (int rank = 0; rank < 8; ++rank) {
+      std::uint64_t bytes = 0;
+      for (const std::uint32_t leaf : holding->LeavesOf(rank)) bytes += loads[leaf].bytes;
+      EXPECT_LE(bytes, most);
+    }
+    for (std::uint32_t leaf = 0; leaf < 32; ++leaf)
+      EXPECT_TRUE(holding->Holds(holding->Next(std::vector<LeafOnWay>{{leaf, 0}}, 3), leaf));
+  }
+  EXPECT_FALSE(Holding::Coupled(8, loads, all / 16));
+}
+
+TEST(Holding, MoreMemoryMakesTheForetoldBalanceBetter) {
+  const std::vector<LeafLoad> loads = SomeLoads(32);
+  std::uint64_t all = 0;
+  for (const LeafLoad& load : loads) all += load.bytes;
+  EXPECT_GT(Holding::Dealt(8, 32).Balance(loads), 1.2);
+  EXPECT_LT(Holding::Coupled(8, loads, all / 2)->Balance(loads), 1.05);
+  EXPECT_EQ(Holding::Coupled(8, loads, all)->Balance(loads), 1);
+}
+
+}  // namespace
+}  // namespace stipple::raytracer
