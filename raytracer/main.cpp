@@ -19,6 +19,7 @@
 #include "raytracer/plan.h"
 #include "raytracer/render/coupled.h"
 #include "raytracer/render/divided.h"
+#include "raytracer/render/machine.h"
 #include "raytracer/render/marks.h"
 #include "raytracer/render/picture.h"
 #include "raytracer/render/render.h"
@@ -66,6 +67,7 @@ Rendered RenderScene(const World& world, const Scene& scene, const Model<Real>& 
   const ImageSize image = scene.view.resolution;
   const ShadingChoice shading{depth, options.min_contribution};
   const auto sampler = MakeSampler(scene, model, kernel, shading, image, options.samples);
+  const WorkMeter meter(sampler->counts());
   return Render(world, *sampler, options.partition, PointsOf(image, options), options.samples);
 }
 
@@ -208,6 +210,8 @@ void RenderPartitioned(const World& world, bool fill, const Options& options) {
                                  ? HomesOf(parts, PointsOf(image, options), image, options.samples)
                                  : std::vector<std::uint32_t>(),
                              &parts.holding};
+  std::optional<WorkMeter> meter;
+  if (tracer) meter.emplace(tracer->counts());
   const DividedRender divided = RenderDivided(world, tracer.get(), choice);
   report.render_s = watch.Lap();
   report.render_cpu_s = watch.LapCpu();
@@ -238,6 +242,12 @@ void WriteScene(const Options& options) {
 }
 
 void LoadAndRender(const World& world, const Options& options) {
+  OnAllRanks(world, [&] {
+    if (world.has_host && options.partition == "guided")
+      throw UsageError(
+          "--partition guided: this machine has a host, which hands out work: bundles");
+    return true;
+  });
   if (options.output.ends_with(".exr")) OnRank(world, 0, [&] { NeedExr(options.output); });
   if (!options.write_scene.empty())
     OnRank(world, 0, [&] { WriteScene(options); });
@@ -264,6 +274,7 @@ int RunOrReport(int argc, char** argv) {
   World world;
   MPI_Comm_rank(world.comm, &world.rank);
   MPI_Comm_size(world.comm, &world.size);
+  world.has_host = MachineHasHost() && world.size > 1;
   try {
     return Run(world, argc, argv);
   } catch (const StoppedTogether& stop) {

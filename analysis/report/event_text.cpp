@@ -157,6 +157,10 @@ std::string TimingText(const Trace& trace, const Process& p, const EventWord* re
       return fmt::format("probe {} from {} tag {}", r.bytes,
                          WorldText(trace, p, r.communicator, r.sender), r.tag);
     }
+    case RecordKind::kTransmission: {
+      const auto r = RecordAt<Transmission>(record);
+      return fmt::format("transmission of {} bytes to {}", r.bytes, r.receiver);
+    }
     case RecordKind::kRegionMode:
       return ModeText(trace, p, RecordAt<RegionMode>(record));
     case RecordKind::kSample:
@@ -199,6 +203,12 @@ std::string WaitedText(const Trace& trace, const Location& location, const Threa
   return ", waited " + FormatSeconds(static_cast<double>(ns) * 1e-9);
 }
 
+std::string SpanText(const Trace& trace, const Location& location, const Transmission& r) {
+  return fmt::format(", {:.9f} to {:.9f}",
+                     static_cast<double>(trace.TimeNs(location, r.begin_ticks)) * 1e-9,
+                     static_cast<double>(trace.TimeNs(location, r.end_ticks)) * 1e-9);
+}
+
 }  // namespace
 
 std::string CanonicalText(const Trace& trace, const Location& location, const Event& event) {
@@ -213,7 +223,10 @@ std::string EventText(const Trace& trace, const Location& location, const Event&
     std::string text = StableText(trace, trace.ProcessOf(location), event.record);
     if (KindOf(*event.record) == RecordKind::kThreadReceive)
       text += WaitedText(trace, location, RecordAt<ThreadReceive>(event.record));
-    return text.empty() ? TimingText(trace, trace.ProcessOf(location), event.record) : text;
+    if (text.empty()) text = TimingText(trace, trace.ProcessOf(location), event.record);
+    if (KindOf(*event.record) == RecordKind::kTransmission)
+      text += SpanText(trace, location, RecordAt<Transmission>(event.record));
+    return text;
   }
   const Region& region = trace.regions()[event.region];
   std::string text = CanonicalText(trace, location, event);

@@ -48,6 +48,10 @@ KernelTime KernelTimeOf(const Trace& trace, KernelTime calls, std::span<const Mp
       spans.clear();
       continue;
     }
+    if (SystemIsInMpi(trace)) {
+      spans = Merged(std::move(spans));
+      continue;
+    }
     // Of a run of short absences the part between them was not away: it counts as if at its begin.
     for (const Absence& a : ReadKernel(trace, l).absences)
       spans.push_back({std::max(a.out_ns, l.begin_ns),

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "analysis/stats/finding_of.h"
+#include "analysis/trace/kernel.h"
 
 namespace stipple {
 
@@ -34,7 +35,7 @@ std::vector<RankStates> StatesOf(const Analysis& analysis, const Selection& sele
       for (const CallSpan& span : analysis.kernel[l->index])
         system_ns += selection.Clamp(span.end_ns) - selection.Clamp(span.begin_ns);
       s.system_ns = system_ns;
-      s.user_ns -= system_ns;
+      (SystemIsInMpi(trace) ? s.message_ns : s.user_ns) -= system_ns;
     }
     states.push_back(s);
   }

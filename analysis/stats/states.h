@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The four states of a rank's main thread, which divide its span: idle is the part of an MPI call
 // before its partners had arrived, message the rest of MPI calls, system the kernel's time outside
-// MPI (when it was recorded), user the remainder.
+// MPI (when it was recorded; on simulated machines that within MPI), user the remainder.
 #ifndef STIPPLE_ANALYSIS_STATS_STATES_H
 #define STIPPLE_ANALYSIS_STATS_STATES_H
 

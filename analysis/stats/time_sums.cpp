@@ -5,6 +5,7 @@
 #include <set>
 
 #include "analysis/stats/analysis.h"
+#include "analysis/trace/kernel.h"
 
 namespace stipple {
 namespace {
@@ -113,7 +114,8 @@ TimeSums SumTimes(const Analysis& analysis) {
 StateClock::StateClock(const Analysis& analysis, const Location& main)
     : main_(main),
       calls_(analysis.sums.calls[main.index]),
-      kernel_(analysis.sums.kernel[main.index]) {}
+      kernel_(analysis.sums.kernel[main.index]),
+      system_is_in_mpi_(SystemIsInMpi(analysis.trace)) {}
 
 StateTimes StateClock::Before(double time_ns) {
   StateTimes times;
@@ -136,6 +138,10 @@ StateTimes StateClock::Before(double time_ns) {
       std::clamp(time_ns, static_cast<double>(main_.begin_ns), static_cast<double>(main_.end_ns)) -
       static_cast<double>(main_.begin_ns);
   times.user = there - mpi - times.system;
+  if (system_is_in_mpi_) {
+    times.user = there - mpi;
+    times.message -= times.system;
+  }
   return times;
 }
 

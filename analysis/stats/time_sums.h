@@ -69,6 +69,7 @@ class StateClock {
   const Location& main_;
   const Array<CallSums>& calls_;
   const Array<KernelSums>& kernel_;
+  bool system_is_in_mpi_;
   std::size_t call_ = 0;  // of the last question
   std::size_t span_ = 0;
 };

@@ -31,6 +31,7 @@ int RunPrint(const Arguments& arguments);
 int RunStats(const Arguments& arguments);
 int RunPlot(const Arguments& arguments);
 int RunReport(const Arguments& arguments);
+int RunSimulate(const Arguments& arguments);
 int RunCompare(const Arguments& arguments);
 int RunWatch(const Arguments& arguments);
 int RunCompact(const Arguments& arguments);

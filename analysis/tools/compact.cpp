@@ -10,6 +10,7 @@
 
 #include "analysis/stats/number.h"
 #include "analysis/tools/command.h"
+#include "analysis/tools/new_archive.h"
 #include "analysis/tools/options.h"
 #include "analysis/tools/process.h"
 #include "analysis/tools/progress.h"
@@ -62,7 +63,7 @@ int RunCompact(const Arguments& arguments) {
   app.Add({"A", "", "the archive", true}, archive);
   app.Add({"-o", "B", "write a new archive and leave A as it is"}, output);
   if (!app.Parse(arguments)) return 0;
-  while (archive.size() > 1 && archive.back() == '/') archive.pop_back();
+  archive = WithoutSlash(archive);
   if (!fs::is_directory(archive))
     throw InputError(archive, "is not an archive (no such directory)");
   if (!output.empty()) MakeDirectory(output);

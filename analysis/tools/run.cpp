@@ -18,10 +18,10 @@
 #include "analysis/stats/number.h"
 #include "analysis/tools/command.h"
 #include "analysis/tools/launcher.h"
+#include "analysis/tools/new_archive.h"
 #include "analysis/tools/options.h"
 #include "analysis/tools/process.h"
 #include "analysis/tools/progress.h"
-#include "analysis/trace/archive_identity.h"
 #include "analysis/trace/input_error.h"
 #include "stipple/filter.h"
 
@@ -149,36 +149,6 @@ void CheckFilter(const std::string& path) {
                      fmt::format("'{}' {}", problem.word, problem.what));
 }
 
-/// Only streams (and what commands of ours left beside them) make an archive that may be removed.
-bool LooksLikeArchive(const fs::path& path) {
-  std::error_code error;
-  if (!fs::is_directory(fs::symlink_status(path, error))) return false;
-  for (const fs::directory_entry& entry : fs::directory_iterator(path, error))
-    if (!entry.is_regular_file() ||
-        (entry.path().extension() != ".stream" && entry.path().extension() != kUnfinishedStream &&
-         !entry.path().filename().string().starts_with(kIndexName)))
-      return false;
-  return !error;
-}
-
-/// False if no archive can be written there: said in one line, and no reason not to run the
-/// command.
-bool MakeArchive(const fs::path& path, bool overwrite) {
-  std::error_code absent;
-  std::error_code error;
-  if (fs::exists(fs::symlink_status(path, absent))) {
-    if (!overwrite)
-      throw InputError(path.string(), "exists; --overwrite replaces it, -o names another");
-    if (!LooksLikeArchive(path))
-      throw InputError(path.string(), "is not an archive, so --overwrite leaves it alone");
-    fs::remove_all(path, error);
-  }
-  if (!error) fs::create_directories(path, error);
-  if (error)
-    fmt::print(stderr, "stipple: nothing is recorded: {}: {}\n", path.string(), error.message());
-  return !error;
-}
-
 /// The libraries to preload, before those that the user preloads.
 std::string Preload(const RunOptions& options) {
   const fs::path directory = LibraryDirectory();
@@ -255,18 +225,6 @@ std::uint64_t BytesOnDisk(const fs::path& path) {
   return bytes;
 }
 
-/// Never fails: an archive that cannot be compacted is as good, only larger.
-void Compact(const std::string& archive) {
-  try {
-    ProgressLine progress;
-    CompactResult result = CompactArchive(archive, archive, StopOnSignals(), progress.meter());
-    progress.Stop();
-    SayLeftAlone(result);
-  } catch (const std::exception& e) {
-    fmt::print(stderr, "stipple: not compacted: {}\n", e.what());
-  }
-}
-
 /// What was recorded, what was left out, what to do next: a line each.
 void Summarise(const RunOptions& options, int status) {
   const std::string& archive = options.archive;
@@ -311,12 +269,12 @@ int RunRun(const Arguments& arguments) {
     const std::string& program = options->command[ProgramIndex(options->command)];
     options->archive = fs::path(program).filename().string() + ".stipple";
   }
-  while (options->archive.size() > 1 && options->archive.back() == '/') options->archive.pop_back();
+  options->archive = WithoutSlash(options->archive);
   const std::string preload = Preload(*options);
   if (!MakeArchive(options->archive, options->overwrite)) return RunToEnd(options->command);
   // A program that does not listen yet, or a shell around it, must not die of the signal.
   const int status = RunToEnd(Prepare(*options, preload), options->paused ? SIGUSR2 : 0);
-  Compact(options->archive);
+  CompactNew(options->archive);
   Summarise(*options, status);
   return status;
 }

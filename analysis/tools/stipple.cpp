@@ -27,6 +27,8 @@ constexpr Command kCommands[] = {
     {"watch", RunWatch, "a run that is still going, page after page"},
     {"compact", RunCompact, "make an archive smaller"},
     {"compare", RunCompare, "two runs on one scale: what changed"},
+    {"simulate", RunSimulate,
+     "the ray tracer on a machine of another time, or of a thousand nodes"},
     {"exemplar", RunExemplar, "the ray tracer's experiments: charts on a page"},
 };
 

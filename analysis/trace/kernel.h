@@ -60,6 +60,10 @@ KernelAccount ReadKernel(const Trace& trace, const Location& location);
 void ForEachKernelRecord(const ThreadStream& thread, ScanCounts& counts,
                          const std::function<void(const EventWord*, std::uint64_t)>& record);
 
+/// Whether the system's time lies within calls of MPI: on simulated machines it is what messages
+/// take to start. Waiting, which switches tell of, is no part of it.
+inline bool SystemIsInMpi(const Trace& trace) { return trace.clock().kind == ClockKind::kVirtual; }
+
 /// Whether the process of this location says that it has recorded `what` (Availability).
 bool HasRecorded(const Trace& trace, const Location& location, std::string_view what);
 

@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include "analysis/trace/kernel.h"
+
 namespace stipple {
 
 MpiCollector::MpiCollector(const Trace& trace, const Location& location)
@@ -80,7 +82,7 @@ std::int64_t MpiCollector::CallBegin(std::uint64_t ticks) const {
 }
 
 void MpiCollector::Called(const SystemCall& r, std::uint64_t ticks) {
-  if (depth_ > 0 || !location_.IsMain()) return;
+  if ((depth_ > 0 && !SystemIsInMpi(trace_)) || !location_.IsMain()) return;
   const std::uint64_t enter = std::min(std::max(r.enter_ticks, location_.first_ticks), ticks);
   out_.system_calls.push_back({trace_.TimeNs(location_, enter), trace_.TimeNs(location_, ticks)});
 }

@@ -13,6 +13,8 @@ constexpr std::uint64_t BytesOf(RecordKind kind) {
   switch (kind) {
     case RecordKind::kMark:
       return sizeof(Mark);
+    case RecordKind::kTransmission:
+      return sizeof(Transmission);
     case RecordKind::kCounter:
       return sizeof(Counter);
     case RecordKind::kMpiSend:

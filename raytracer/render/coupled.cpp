@@ -7,6 +7,8 @@
 #include <optional>
 #include <utility>
 
+#include "raytracer/render/machine.h"
+
 namespace stipple::raytracer {
 namespace {
 
@@ -21,6 +23,7 @@ std::vector<std::uint64_t> PilotWork(const World& world, ShadingChoice shading,
   if (world.rank < holders) {
     const World tracing{world.comm, world.rank, holders};
     const auto tracer = MakeRankTracer(parts, world.rank, shading, kPilot, Samples{1});
+    const WorkMeter meter(tracer->counts());
     PartitionChoice points;
     points.raster = kPilot;
     RenderDivided(tracing, tracer.get(), {"scattered", points, holders});

@@ -12,7 +12,7 @@ PointSupply::PointSupply(const World& world, Mail& mail, const RayPartitionEntry
       tiles_(choice.raster) {
   switch (supply_) {
     case Supply::kBeforehand:
-      points_ = partition.points(choice, world.rank, world.size);
+      points_ = partition.points(choice, world.rank, world.Nodes());
       break;
     case Supply::kHost:
       bundles_.emplace(choice);

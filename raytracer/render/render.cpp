@@ -29,16 +29,17 @@ constexpr std::size_t kPointsPerRecord =
   return results;
 }
 
-/// Rank 0 computes which points each share has; only results travel.
+/// Rank 0 or the host computes which points each share has; only results travel.
 [[gnu::noinline]] Raster AssembleShares(const World& world, RayPartition partition,
                                         const PartitionChoice& choice, const Round& round,
                                         const std::vector<RayResult>& own) {
+  if (world.has_host) MarkHost();
   Mark(Moment::kAssembleBegins);
   const ResultType type;
   Raster raster(PointCount(choice.raster));
-  Place(round.Of(partition(choice, 0, world.size)), own, raster);
-  for (int rank = 1; rank < world.size; ++rank) {
-    const std::vector<RasterPoint> points = round.Of(partition(choice, rank, world.size));
+  if (!world.has_host) Place(round.Of(partition(choice, 0, world.Nodes())), own, raster);
+  for (int rank = world.has_host ? 0 : 1; rank < world.Nodes(); ++rank) {
+    const std::vector<RasterPoint> points = round.Of(partition(choice, rank, world.Nodes()));
     std::vector<RayResult> results(points.size());
     MPI_Recv(results.data(), static_cast<int>(results.size()), type.get(), rank, kShareTag,
              world.comm, MPI_STATUS_IGNORE);
@@ -97,19 +98,23 @@ void Place(const std::vector<RasterPoint>& points, const std::vector<RayResult>&
 }
 
 int AssemblingRank(const World& world, std::string_view partition) {
-  return FindRow(kRayPartitions, partition).supply == Supply::kHost ? world.size - 1 : 0;
+  const bool host = world.has_host || FindRow(kRayPartitions, partition).supply == Supply::kHost;
+  return host ? world.size - 1 : 0;
 }
 
 Rendered RenderShares(const World& world, Sampler& sampler, RayPartition partition,
                       const PartitionChoice& choice, const Round& round) {
   Rendered rendered;
-  const std::vector<RayResult> results =
-      TraceShare(world, sampler, round.Of(partition(choice, world.rank, world.size)), round);
-  if (world.rank == 0) {
+  const int assembling = world.has_host ? world.size - 1 : 0;
+  std::vector<RayResult> results;
+  if (world.rank < world.Nodes())
+    results =
+        TraceShare(world, sampler, round.Of(partition(choice, world.rank, world.Nodes())), round);
+  if (world.rank == assembling) {
     rendered.raster = AssembleShares(world, partition, choice, round, results);
   } else {
     const ResultType type;
-    MPI_Send(results.data(), static_cast<int>(results.size()), type.get(), 0, kShareTag,
+    MPI_Send(results.data(), static_cast<int>(results.size()), type.get(), assembling, kShareTag,
              world.comm);
     rendered.messages = 1;
   }

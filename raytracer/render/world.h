@@ -19,6 +19,9 @@ struct World {
   MPI_Comm comm = MPI_COMM_WORLD;
   int rank = 0;
   int size = 1;
+  bool has_host = false;  // the last rank is no node: it traces nothing, and collects
+
+  int Nodes() const { return has_host ? size - 1 : size; }
 };
 
 /// Thrown on every rank when one of them cannot go on. The message is empty except on the rank that

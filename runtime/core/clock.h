@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The archive's clock on real machines: the time-stamp counter, and what relates it to nanoseconds.
+// The archive's clock: on real machines the time-stamp counter and what relates it to nanoseconds,
+// in a simulation the simulator's.
 #ifndef STIPPLE_RUNTIME_CORE_CLOCK_H
 #define STIPPLE_RUNTIME_CORE_CLOCK_H
 
@@ -8,13 +9,24 @@
 
 #include <cstdint>
 
+#include "runtime/core/flavour.h"
+#include "runtime/core/simulator.h"
 #include "runtime/core/syscalls.h"
+#include "stipple/format.h"
 
 namespace stipple {
 
+#ifdef STIPPLE_SIMULATED
+inline constexpr ClockKind kClockKind = ClockKind::kVirtual;
+inline std::uint64_t ReadTicks() { return SimulatedTicks(); }
+#else
+inline constexpr ClockKind kClockKind = ClockKind::kTsc;
 inline std::uint64_t ReadTicks() { return __builtin_ia32_rdtsc(); }
+#endif
 
 inline std::uint64_t ReadClockNs(clockid_t clock) {
+  if constexpr (kSimulated)
+    if (clock == CLOCK_MONOTONIC_RAW) return ReadTicks();
   timespec now{};
   // Not the vDSO's: its address would have to be looked up, and this is never on a fast path.
   Syscall(SYS_clock_gettime, clock, Argument(&now));

@@ -11,6 +11,7 @@
 #include <atomic>
 #include <cstdint>
 
+#include "runtime/core/flavour.h"
 #include "runtime/core/syscalls.h"
 
 namespace stipple {
@@ -19,8 +20,12 @@ namespace stipple {
 /// kernel kills a process that has it blocked when Syscall User Dispatch raises it.
 class SignalBlock {
  public:
-  SignalBlock() { Change(kBlock, ~(std::uint64_t{1} << (kSigSys - 1)), &before_); }
-  ~SignalBlock() { Change(kSetMask, before_, nullptr); }
+  SignalBlock() {
+    if constexpr (!kSimulated) Change(kBlock, ~(std::uint64_t{1} << (kSigSys - 1)), &before_);
+  }
+  ~SignalBlock() {
+    if constexpr (!kSimulated) Change(kSetMask, before_, nullptr);
+  }
   SignalBlock(const SignalBlock&) = delete;
   SignalBlock& operator=(const SignalBlock&) = delete;
 

@@ -49,6 +49,9 @@ void CopyText(char (&to)[kBytes], const char* text) {
 
 /// The executable's file name without its directories.
 void ReadProgramName(char (&name)[256]) {
+  // A simulator's own program would be the answer below.
+  const char* simulated = kSimulated ? getenv("STIPPLE_PROGRAM") : nullptr;
+  if (simulated != nullptr) return CopyText(name, simulated);
   char path[512];
   const long bytes =
       Syscall(SYS_readlink, Argument("/proc/self/exe"), Argument(path), sizeof path - 1);
@@ -75,7 +78,7 @@ void WriteFileHeader(char* place, const Process& process, std::uint64_t realtime
   header.start_realtime_ns = realtime_ns;
   header.start_raw_ns = start.raw_ns;
   header.start_ticks = start.ticks;
-  header.clock = ClockKind::kTsc;
+  header.clock = kClockKind;
   header.forked = begun_before ? 1 : 0;
   header.tsc_hz = StatedTicksPerSecond();
   const std::size_t id_bytes =
@@ -87,11 +90,27 @@ void WriteFileHeader(char* place, const Process& process, std::uint64_t realtime
   std::atomic_ref<std::uint64_t>(header.magic).store(kFileMagic, std::memory_order_release);
 }
 
+/// A simulator's command line without what is the simulator's: the program, which it is given first
+/// ("smpimain PROGRAM SETTINGS -- ARGUMENTS"), and the arguments. Returns the bytes.
+std::size_t WithoutSimulator(char* text, std::size_t bytes) {
+  const std::size_t program = TextBytes(text) + 1;
+  std::size_t arguments = program;
+  while (arguments + 4 < bytes && (text[arguments] != '\0' || text[arguments + 1] != '-' ||
+                                   text[arguments + 2] != '-' || text[arguments + 3] != '\0'))
+    ++arguments;
+  if (arguments + 4 >= bytes) return bytes;
+  const std::size_t name_bytes = TextBytes(text + program) + 1;
+  CopyBytes(text, text + program, name_bytes);
+  CopyBytes(text + name_bytes, text + arguments + 4, bytes - arguments - 4);
+  return name_bytes + bytes - arguments - 4;
+}
+
 void DefineCommandLine(Process& process) {
   constexpr std::size_t kMostBytes = 64 * 1024;
   char* text = static_cast<char*>(MapMemory(kMostBytes));
   if (text == nullptr) return;
   std::size_t bytes = ReadSmallFile("/proc/self/cmdline", text, kMostBytes);
+  if (kSimulated) bytes = WithoutSimulator(text, bytes);
   if (bytes > 0 && text[bytes - 1] == '\0') --bytes;  // between arguments only
   CommandLine record{};
   record.text_bytes = static_cast<std::uint32_t>(bytes);

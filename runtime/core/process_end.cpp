@@ -11,6 +11,13 @@
 namespace stipple {
 namespace {
 
+#ifdef STIPPLE_SIMULATED
+
+/// The simulator may unload a rank's copy of the program before it exits.
+__attribute__((destructor(101))) void AtUnload() { NoteEnd(Ending::kExit, 0); }
+
+#else
+
 constinit bool asked = false;
 
 void AtExit(int status, void*) { NoteEnd(Ending::kExit, status); }
@@ -19,12 +26,16 @@ __attribute__((constructor(101))) void PrepareIfAsked() {
   if (getenv("STIPPLE_ARCHIVE") != nullptr) PrepareEnd();
 }
 
+#endif
+
 }  // namespace
 
 void PrepareEnd() {
+#ifndef STIPPLE_SIMULATED
   if (asked) return;
   asked = true;
   on_exit(AtExit, nullptr);
+#endif
 }
 
 }  // namespace stipple

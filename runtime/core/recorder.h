@@ -12,6 +12,7 @@
 struct stipple_channel;
 struct stipple_name;
 struct stipple_region;
+struct stipple_simulator;
 
 /// What a library that records beside the events wants to be told; null: nothing. Called in the
 /// thread that it is about, with signals blocked and no lock held. Events of such a call are lost.
@@ -83,6 +84,8 @@ void stipple_record_send(struct stipple_channel* channel, uint64_t key, uint64_t
 void stipple_record_receive(struct stipple_channel* channel, uint64_t key, uint64_t bytes,
                             uint64_t waiting_since);
 uint32_t stipple_define_channel(const char* name);
+void stipple_set_simulator(const struct stipple_simulator* simulator);
+void stipple_charge_ns(uint64_t ns);
 void stipple_switch(int on);
 void stipple_switch_regions(const char* pattern, int on);
 }

@@ -94,7 +94,7 @@ EventWord* Step(Thread& thread, std::uint64_t bytes, std::uint64_t ticks) {
   thread.step = place + bytes;
   thread.last_ticks = ticks;
   if (++thread.steps % kStepEvents == 0) {
-    const bool quick = ticks - thread.step_begin < kQuickTicks;
+    const bool quick = !kSimulated && ticks - thread.step_begin < kQuickTicks;
     thread.step_begin = ticks;
     if (quick) EndStepping(thread);
   }

@@ -8,7 +8,7 @@
 
 namespace stipple {
 
-__thread SkippedVisits* skipped_visits = nullptr;
+STIPPLE_PER_THREAD SkippedVisits* skipped_visits = nullptr;
 
 namespace {
 

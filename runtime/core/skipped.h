@@ -8,10 +8,13 @@
 
 #include <cstdint>
 
+#include "runtime/core/flavour.h"
+
 namespace stipple {
 
 struct SkippedVisits;
-extern __thread SkippedVisits* skipped_visits;  // of this thread; null until there was one
+extern STIPPLE_PER_THREAD SkippedVisits*
+    skipped_visits;  // of this thread; null until there was one
 
 /// Remembers a visit of `what` (an address, or a region) whose hook runs in `frame`.
 void NoteSkipped(std::uintptr_t what, const void* frame);

@@ -44,6 +44,16 @@
 	leaq	144(%rbp), %rsi			/* stack pointer at the jump */
 	.endm
 
+	/* rdx: this thread's control block. */
+	.macro	THIS_STREAM
+#ifdef STIPPLE_SIMULATED
+	movq	stipple_stream(%rip), %rdx
+#else
+	movq	stipple_stream@gottpoff(%rip), %rdx
+	movq	%fs:(%rdx), %rdx
+#endif
+	.endm
+
 	.text
 	.p2align 6
 	.globl	stipple_slow
@@ -159,8 +169,7 @@ stipple_slow:
 	.cfi_restore_state
 	testl	$STIPPLE_LEAVE, %eax
 	jnz	.Lappend
-	movq	stipple_stream@gottpoff(%rip), %rdx
-	movq	%fs:(%rdx), %rdx
+	THIS_STREAM
 	movq	24(%rdx), %rdx			/* counts */
 	testq	%rdx, %rdx
 	jz	.Lask				/* no counts yet, or a sample is open */
@@ -172,8 +181,7 @@ stipple_slow:
 	.cfi_def_cfa_offset 128
 	pushq	%rcx
 	.cfi_def_cfa_offset 136
-	movq	stipple_stream@gottpoff(%rip), %rdx
-	movq	%fs:(%rdx), %rdx
+	THIS_STREAM
 	movl	$8, %ecx
 	xaddq	%rcx, (%rdx)			/* cur */
 	cmpq	8(%rdx), %rcx			/* end */

@@ -30,9 +30,9 @@
 extern "C" {
 /// Reservations in it always fail: what a thread points at until its first event.
 constinit stipple::Thread stipple_no_stream{};
-__thread stipple_control* stipple_stream = &stipple_no_stream.control;
+STIPPLE_PER_THREAD stipple_control* stipple_stream = &stipple_no_stream.control;
 /// In the slow path: an event from within would be one of the runtime itself.
-static __thread bool stipple_inside = false;
+static STIPPLE_PER_THREAD bool stipple_inside = false;
 }
 
 namespace stipple {
@@ -92,6 +92,7 @@ void DefineThisLocation(Process& process, const Thread& thread) {
 /// What events cost, by the process's first thread. The lock is held.
 void MeasureEvents(Process& process, Thread& thread) {
   process.calibrated = 1;
+  if constexpr (kSimulated) return;  // what they cost is a parameter of the simulation
   const Calibration calibration = Calibrate();
   Define(process, &calibration, Calibration::kKind, sizeof calibration);
   BeginBudget(thread, calibration);
@@ -146,7 +147,7 @@ bool TakeNextChunk(Process& process, Thread& thread, std::uint64_t bytes, std::u
   thread.review_from = thread.control.cur;
   WriteSteps(process, thread);
   Tell(&stipple_observer::chunk_taken);
-  if (slow) BeginStepping(thread, ticks);
+  if (slow || kSimulated) BeginStepping(thread, ticks);
   return true;
 }
 
@@ -156,7 +157,7 @@ EventWord* ReserveSlowly(std::uint64_t bytes, std::uint64_t ticks) {
   Thread* thread = AnyThread();
   if (thread == nullptr) return nullptr;
   Process* process = ThisProcess();
-  WatchSilence(*process, ticks);
+  if constexpr (!kSimulated) WatchSilence(*process, ticks);
   if (EventWord* place = TakeForced(*thread, bytes, ticks)) return place;
   for (int attempt = 0; attempt < 2; ++attempt) {
     if (thread->step != 0)
@@ -219,6 +220,7 @@ std::uint64_t AppendEvent(std::uint32_t region, bool leave) {
   EventWord* place = ReserveRecord(sizeof(EventWord));
   const std::uint64_t ticks = ReadTicks();
   if (place != nullptr) Commit(place, MakeEvent(ticks, leave, RegionId{region}));
+  if constexpr (kSimulated) ChargeEvent();
   return ticks;
 }
 
@@ -299,7 +301,8 @@ void PrepareThreads() {
   prepared = true;
   PrepareSaveArea();
   PrepareEnd();
-  have_end_key = pthread_key_create(&end_key, EndThread) == 0 && end_key < kInlineKeys;
+  if constexpr (!kSimulated)
+    have_end_key = pthread_key_create(&end_key, EndThread) == 0 && end_key < kInlineKeys;
 }
 
 std::int64_t ControlSlotOffset() {
@@ -338,6 +341,7 @@ std::uint32_t stipple_slow_event(std::uint32_t token, std::uint64_t stack) {
       const std::uint64_t ticks = leave ? NotBeforeChunk(arrived) : ReadTicks();
       const bool timed = (token & STIPPLE_NO_CLOCK) == 0;
       Commit(place, MakeEvent(timed ? ticks : 0, leave, RegionId{region}));
+      if constexpr (kSimulated) ChargeEvent();
       return token;
     }
   }

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "runtime/core/flavour.h"
 #include "runtime/core/process.h"
 #include "stipple/abi.h"
 
@@ -83,7 +84,7 @@ void CountLost(std::uint64_t events);
 
 extern "C" {
 /// The control block that this thread appends to; what stipple_dso.tp_offset leads to.
-extern __thread stipple_control* stipple_stream;
+extern STIPPLE_PER_THREAD stipple_control* stipple_stream;
 
 /// Where instrumented code jumps when its fast path does not fit (slow.S).
 void stipple_slow();

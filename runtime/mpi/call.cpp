@@ -23,7 +23,7 @@ Call calls[] = {
 #undef STIPPLE_SILENT
 };
 
-thread_local constinit std::uintptr_t outermost_frame = 0;
+STIPPLE_PER_THREAD std::uintptr_t outermost_frame = 0;
 
 namespace {
 
@@ -58,6 +58,9 @@ void* ResolveCall(Call& call) {
 }
 
 bool KnownMpi() {
+#ifdef STIPPLE_CLASSIC_PMPI
+  return true;
+#endif
   enum class Known : int { kUnasked, kYes, kNo };
   static constinit std::atomic<Known> known{Known::kUnasked};
   if (known.load(std::memory_order_relaxed) == Known::kUnasked) {

@@ -14,7 +14,10 @@
 #include <atomic>
 #include <cstdint>
 
+#include "runtime/core/flavour.h"
 #include "runtime/core/recorder.h"
+#include "runtime/core/simulator.h"
+#include "runtime/mpi/simulated.h"
 
 // mpi.h may replace the names that MPI-3 removed by macros that refuse them.
 #undef MPI_Address
@@ -76,9 +79,16 @@ Function* Real(CallIndex index) {
   return reinterpret_cast<Function*>(real);
 }
 
-/// The MPI library's own PMPI_name; never the wrapper.
+/// The MPI library's own PMPI_name; never the wrapper. The classic way, for what is linked into the
+/// program, is the linker's: the wrappers are MPI_name, the real ones have other names.
+#ifdef STIPPLE_CLASSIC_PMPI
+#define STIPPLE_REAL(name) (&PMPI_##name)
+#define STIPPLE_WRAPPER(name) MPI_##name
+#else
 #define STIPPLE_REAL(name) \
   (::stipple::mpi::Real<decltype(PMPI_##name)>(::stipple::mpi::CallIndex::k##name))
+#define STIPPLE_WRAPPER(name) PMPI_##name
+#endif
 
 /// Whether the process uses the MPI that this library was compiled for. Another one has other
 /// handles; its calls are handed on untouched.
@@ -90,7 +100,7 @@ uint32_t DefineCall(Call& call);
 /// Stack address of the outermost wrapper that this thread is in; 0 outside MPI. An address and not
 /// a depth: a wrapper left by longjmp or an exception from an error handler never counts down, but
 /// the next call then comes from a frame above it.
-extern thread_local constinit std::uintptr_t outermost_frame;
+extern STIPPLE_PER_THREAD std::uintptr_t outermost_frame;
 
 /// One visit of the program to an MPI function: enter now, leave by Leave().
 class Visit {
@@ -98,6 +108,7 @@ class Visit {
   explicit Visit(CallIndex index) noexcept {
     const auto frame = reinterpret_cast<std::uintptr_t>(__builtin_frame_address(0));
     if (outermost_frame != 0 && frame < outermost_frame) return;
+    if constexpr (kSimulated) SettleCharges();
     region_ = CallOf(index).region.load(std::memory_order_relaxed);
     if (region_ == 0) [[unlikely]] {
       region_ = DefineCall(CallOf(index));
@@ -115,6 +126,7 @@ class Visit {
   std::uint64_t EnterTicks() const { return enter_ticks_; }
 
   void Leave() noexcept {
+    if constexpr (kSimulated) RecordSystem(enter_ticks_);
     stipple_leave(region_);
     outermost_frame = 0;
   }
@@ -132,6 +144,7 @@ void Append(const Record& record) noexcept {
 
 }  // namespace stipple::mpi
 
+#ifndef STIPPLE_CLASSIC_PMPI
 extern "C" {
 // What mpi.h no longer declares.
 #define STIPPLE_CALL(shape, name, parameters, arguments)
@@ -148,5 +161,6 @@ extern "C" {
 #undef STIPPLE_BY_HAND
 #undef STIPPLE_SILENT
 }
+#endif
 
 #endif

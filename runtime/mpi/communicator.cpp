@@ -147,9 +147,21 @@ Origin CountCreation(MPI_Comm parent) {
   return {.parent = from.id, .creation = from.creations, .hashed = false, .tag = 0};
 }
 
-}  // namespace
-
-void BeginCommunicators() {
+/// By the names that they have in MPI.
+#ifdef STIPPLE_CLASSIC_PMPI
+void FindPredefined() {
+  predefined = {.world = MPI_COMM_WORLD,
+                .self = MPI_COMM_SELF,
+                .comm_null = MPI_COMM_NULL,
+                .request_null = MPI_REQUEST_NULL,
+                .request_empty = MPI_REQUEST_NULL,
+                .message_null = MPI_MESSAGE_NULL,
+                .message_no_proc = MPI_MESSAGE_NULL,
+                .byte = MPI_BYTE,
+                .datatype_null = MPI_DATATYPE_NULL};
+}
+#else
+void FindPredefined() {
   predefined.world = static_cast<MPI_Comm>(FindVariable("ompi_mpi_comm_world"));
   predefined.self = static_cast<MPI_Comm>(FindVariable("ompi_mpi_comm_self"));
   predefined.comm_null = static_cast<MPI_Comm>(FindVariable("ompi_mpi_comm_null"));
@@ -159,6 +171,13 @@ void BeginCommunicators() {
   predefined.message_no_proc = static_cast<MPI_Message>(FindVariable("ompi_message_no_proc"));
   predefined.byte = static_cast<MPI_Datatype>(FindVariable("ompi_mpi_byte"));
   predefined.datatype_null = static_cast<MPI_Datatype>(FindVariable("ompi_mpi_datatype_null"));
+}
+#endif
+
+}  // namespace
+
+void BeginCommunicators() {
+  FindPredefined();
   STIPPLE_REAL(Comm_rank)(predefined.world, &world.rank);
   STIPPLE_REAL(Comm_size)(predefined.world, &world.size);
   STIPPLE_REAL(Comm_group)(predefined.world, &world_group);

@@ -2,6 +2,7 @@
 #include "runtime/mpi/message.h"
 
 #include "runtime/mpi/handle_table.h"
+#include "runtime/mpi/simulated.h"
 #include "stipple/format.h"
 
 namespace stipple::mpi {
@@ -20,12 +21,18 @@ std::uint64_t KeyOf(MPI_Message handle) { return reinterpret_cast<std::uint64_t>
 
 /// Bytes of the message that a status tells of.
 std::uint64_t BytesIn(const MPI_Status& status) {
+#ifdef STIPPLE_CLASSIC_PMPI
+  int bytes = 0;  // a simulator has no Get_elements_x, and no messages of 2 GiB
+  STIPPLE_REAL(Get_count)(&status, predefined.byte, &bytes);
+#else
   MPI_Count bytes = 0;
   STIPPLE_REAL(Get_elements_x)(&status, predefined.byte, &bytes);
+#endif
   return bytes < 0 ? 0 : static_cast<std::uint64_t>(bytes);
 }
 
 void AppendSend(std::uint64_t ticks, const Request& send, uint32_t number) {
+  if constexpr (kSimulated) NoteSent(send.bytes);
   Append(MpiSend{.header = 0,
                  .ticks = ticks,
                  .bytes = send.bytes,
@@ -43,6 +50,7 @@ void AppendPost(std::uint64_t ticks, const Request& receive) {
 }
 
 void AppendReceive(std::uint64_t ticks, const Request& receive, const MPI_Status& status) {
+  if constexpr (kSimulated) NoteReceived(BytesIn(status));
   Append(MpiReceive{.header = 0,
                     .ticks = ticks,
                     .bytes = BytesIn(status),

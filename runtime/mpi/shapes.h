@@ -13,45 +13,54 @@
 
 #define STIPPLE_EXPORT __attribute__((visibility("default")))
 
-/// MPI_name is another name of PMPI_name.
+/// MPI_name is another name of PMPI_name; the classic way has no PMPI_name of its own.
+#ifdef STIPPLE_CLASSIC_PMPI
+#define STIPPLE_ALIAS(name)
+#else
 #define STIPPLE_ALIAS(name)                                  \
   extern "C" STIPPLE_EXPORT decltype(PMPI_##name) MPI_##name \
       __attribute__((alias("PMPI"                            \
                            "_" #name)));
+#endif
 
 /// A wrapper: `before` and `after` surround the real call and may use `visit` and `returned`.
-#define STIPPLE_WRAP(name, parameters, arguments, before, after) \
-  extern "C" STIPPLE_EXPORT int PMPI_##name parameters {         \
-    auto* const real = STIPPLE_REAL(name);                       \
-    if (real == nullptr) [[unlikely]]                            \
-      return MPI_ERR_OTHER;                                      \
-    Visit visit(CallIndex::k##name);                             \
-    if (!visit.Recorded()) return real arguments;                \
-    before;                                                      \
-    const int returned = real arguments;                         \
-    after;                                                       \
-    visit.Leave();                                               \
-    return returned;                                             \
-  }                                                              \
+#define STIPPLE_WRAP(name, parameters, arguments, before, after)   \
+  extern "C" STIPPLE_EXPORT int STIPPLE_WRAPPER(name) parameters { \
+    auto* const real = STIPPLE_REAL(name);                         \
+    if (real == nullptr) [[unlikely]]                              \
+      return MPI_ERR_OTHER;                                        \
+    Visit visit(CallIndex::k##name);                               \
+    if (!visit.Recorded()) return real arguments;                  \
+    before;                                                        \
+    const int returned = real arguments;                           \
+    after;                                                         \
+    visit.Leave();                                                 \
+    return returned;                                               \
+  }                                                                \
   STIPPLE_ALIAS(name)
 
+// The classic way leaves plain calls alone: another MPI's prototypes may differ in them.
+#ifdef STIPPLE_CLASSIC_PMPI
+#define STIPPLE_SHAPE_plain(name, parameters, arguments)
+#else
 #define STIPPLE_SHAPE_plain(name, parameters, arguments) \
   STIPPLE_WRAP(name, parameters, arguments, , )
+#endif
 
 // Beginning and end: on every rank, even if this one does not record.
 
-#define STIPPLE_EDGE(name, parameters, arguments, before, after) \
-  extern "C" STIPPLE_EXPORT int PMPI_##name parameters {         \
-    auto* const real = STIPPLE_REAL(name);                       \
-    if (real == nullptr) [[unlikely]]                            \
-      return MPI_ERR_OTHER;                                      \
-    Visit visit(CallIndex::k##name);                             \
-    before;                                                      \
-    const int returned = real arguments;                         \
-    after;                                                       \
-    if (visit.Recorded()) visit.Leave();                         \
-    return returned;                                             \
-  }                                                              \
+#define STIPPLE_EDGE(name, parameters, arguments, before, after)   \
+  extern "C" STIPPLE_EXPORT int STIPPLE_WRAPPER(name) parameters { \
+    auto* const real = STIPPLE_REAL(name);                         \
+    if (real == nullptr) [[unlikely]]                              \
+      return MPI_ERR_OTHER;                                        \
+    Visit visit(CallIndex::k##name);                               \
+    before;                                                        \
+    const int returned = real arguments;                           \
+    after;                                                         \
+    if (visit.Recorded()) visit.Leave();                           \
+    return returned;                                               \
+  }                                                                \
   STIPPLE_ALIAS(name)
 
 #define STIPPLE_SHAPE_init(name, parameters, arguments) \
@@ -59,7 +68,7 @@
 #define STIPPLE_SHAPE_init_thread(name, parameters, arguments) \
   STIPPLE_EDGE(name, parameters, arguments, , BeginWorld(returned, *provided))
 #define STIPPLE_SHAPE_finalize(name, parameters, arguments) \
-  STIPPLE_EDGE(name, parameters, arguments, EndWorld(), )
+  STIPPLE_EDGE(name, parameters, arguments, EndWorld(), if constexpr (kSimulated) EndSimulation())
 
 // Point to point.
 
@@ -180,6 +189,25 @@
         CommunicatorCreatedByGroup(comm, tag, *newcomm);             \
         STIPPLE_MEET(Find(*newcomm));                                \
       })
+#define STIPPLE_END(name, parameters, arguments, object)                 \
+  STIPPLE_WRAP(name, parameters, arguments, const auto handle = *object; \
+               const Communicator known = Forget(handle);                \
+               STIPPLE_MEET(known), if (returned != MPI_SUCCESS) Remember(handle, known))
+#define STIPPLE_SHAPE_comm_free(name, parameters, arguments) \
+  STIPPLE_END(name, parameters, arguments, comm)
+
+#ifdef STIPPLE_CLASSIC_PMPI  // as plain ones
+#define STIPPLE_SHAPE_comm_from(name, parameters, arguments)
+#define STIPPLE_SHAPE_comm_join(name, parameters, arguments)
+#define STIPPLE_SHAPE_comm_between(name, parameters, arguments)
+#define STIPPLE_SHAPE_win_create(name, parameters, arguments)
+#define STIPPLE_SHAPE_win_collective(name, parameters, arguments)
+#define STIPPLE_SHAPE_win_free(name, parameters, arguments)
+#define STIPPLE_SHAPE_file_open(name, parameters, arguments)
+#define STIPPLE_SHAPE_file_collective(name, parameters, arguments)
+#define STIPPLE_SHAPE_file_icollective(name, parameters, arguments)
+#define STIPPLE_SHAPE_file_close(name, parameters, arguments)
+#else
 #define STIPPLE_SHAPE_comm_from(name, parameters, arguments)          \
   STIPPLE_WRAP(name, parameters, arguments, STIPPLE_MEET(Find(comm)), \
                if (returned == MPI_SUCCESS) CommunicatorCreatedBetween(*newcomm))
@@ -192,12 +220,6 @@
 #define STIPPLE_SHAPE_comm_between(name, parameters, arguments) \
   STIPPLE_WRAP(name, parameters, arguments, ,                   \
                if (returned == MPI_SUCCESS) CommunicatorCreatedBetween(*newcomm))
-#define STIPPLE_END(name, parameters, arguments, object)                 \
-  STIPPLE_WRAP(name, parameters, arguments, const auto handle = *object; \
-               const Communicator known = Forget(handle);                \
-               STIPPLE_MEET(known), if (returned != MPI_SUCCESS) Remember(handle, known))
-#define STIPPLE_SHAPE_comm_free(name, parameters, arguments) \
-  STIPPLE_END(name, parameters, arguments, comm)
 
 #define STIPPLE_SHAPE_win_create(name, parameters, arguments)         \
   STIPPLE_WRAP(name, parameters, arguments, STIPPLE_MEET(Find(comm)), \
@@ -217,6 +239,7 @@
                Follow(returned, CollectiveRequest(number), request))
 #define STIPPLE_SHAPE_file_close(name, parameters, arguments) \
   STIPPLE_END(name, parameters, arguments, fh)
+#endif
 
 // Collectives: the traffic of each rule, from the parameters' names.
 

@@ -12,11 +12,12 @@ void BeginWorld(int result, int thread_level) {
   if (result != MPI_SUCCESS || !KnownMpi()) return;
   threads_may_race = thread_level == MPI_THREAD_MULTIPLE;
   BeginCommunicators();
-  SynchroniseClocks();
+  if constexpr (!kSimulated) SynchroniseClocks();
 }
 
 void EndWorld() {
-  if (world.size != 0) SynchroniseClocks();
+  if (kSimulated || world.size == 0) return;
+  SynchroniseClocks();
 }
 
 }  // namespace stipple::mpi

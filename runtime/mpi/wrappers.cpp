@@ -16,6 +16,7 @@ namespace stipple::mpi {
 #define STIPPLE_SILENT(name)
 #include "runtime/mpi/calls.def"
 
+#ifndef STIPPLE_CLASSIC_PMPI
 // MPI defines no effect for Pcontrol: it is a message to a profiler, so its further arguments end
 // here.
 extern "C" STIPPLE_EXPORT int PMPI_Pcontrol(const int level, ...) {
@@ -28,5 +29,6 @@ extern "C" STIPPLE_EXPORT int PMPI_Pcontrol(const int level, ...) {
   return result;
 }
 STIPPLE_ALIAS(Pcontrol)
+#endif
 
 }  // namespace stipple::mpi

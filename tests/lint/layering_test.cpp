@@ -44,7 +44,7 @@ const std::vector<PartRule> kRules = {
     {"raytracer", {kUser}, {"mpi.h", "png.h", "fmt/", "nlohmann/", "CLI/"}},
     {"raytracer/geometry", {"raytracer", kUser}, {"embree", "hwy/"}},
     {"raytracer/image", {"raytracer", kUser}, {"png.h", "OpenEXR/", "fmt/"}},
-    {"raytracer/simulate", {"raytracer", kUser}, {"simgrid/", "smpi/", "mpi.h"}},
+    {"raytracer/simulate", {"raytracer", kUser}, {"simgrid/", "smpi/", "mpi.h", "fmt/"}},
     {"analysis/trace", {kFormat}, {"fmt/", "zstd.h", "elfutils/", "dwarf.h"}},
     {"analysis/stats", {kFormat, "analysis/trace"}, {"fmt/"}},
     {"analysis/views", {"analysis/stats", "analysis/trace"}, {"fmt/", "vtk", "librsvg/", "cairo"}},

@@ -179,6 +179,45 @@ STIPPLE_INLINE void stipple_start_regions(const char* pattern) {
   if (record) STIPPLE_CALL(record(pattern, 1));
 }
 
+/* Simulated time: for programs that a simulator runs, with the runtime of flavour sim linked into
+ * them (docs/architecture.md, "Simulated machines"). Nothing happens elsewhere. */
+
+/* A message on its way through the machine's network, from when its first byte left until its last
+ * one was there. */
+struct stipple_transmission {
+  uint64_t begin_ns, end_ns;
+  uint64_t bytes;   /* with what the network adds */
+  int32_t receiver; /* world rank */
+  int32_t reserved;
+};
+
+/* What the simulator tells the runtime of this rank. */
+struct stipple_simulator {
+  uint64_t (*now_ns)(void);    /* the time, all that was charged included; never goes back */
+  void (*charge)(uint64_t ns); /* this rank works for so long */
+  void (*settle)(void);        /* all that was charged passes, for all the machine to see */
+  void (*end)(void);           /* after MPI_Finalize: from now on the time stands */
+  uint64_t (*send_ns)(uint64_t bytes);    /* what the system takes to start a message */
+  uint64_t (*receive_ns)(uint64_t bytes); /* and to take one */
+  int (*next_transmission)(
+      struct stipple_transmission*); /* 0: no further one of this rank has ended */
+  uint64_t event_ns;                 /* what recording an event costs on the simulated machine */
+};
+
+/* Before the first event; `simulator` stays. */
+STIPPLE_INLINE void stipple_simulated_by(const struct stipple_simulator* simulator) {
+  void (*set)(const struct stipple_simulator*);
+  STIPPLE_RUNTIME_FUNCTION(stipple_set_simulator, set);
+  if (set) STIPPLE_CALL(set(simulator));
+}
+
+/* The program has worked for so long on the simulated machine. */
+STIPPLE_INLINE void stipple_charge(uint64_t ns) {
+  void (*charge)(uint64_t);
+  STIPPLE_RUNTIME_FUNCTION(stipple_charge_ns, charge);
+  if (charge) STIPPLE_CALL(charge(ns));
+}
+
 #ifdef __cplusplus
 }
 #endif

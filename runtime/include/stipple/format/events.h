@@ -137,6 +137,20 @@ struct MpiProbe {
 };
 static_assert(sizeof(MpiProbe) == 40);
 
+/// A message was in the network, as the simulator of the machine says (flavour sim): one of this
+/// rank's, in the order of their ends. `ticks` is when it was told.
+struct Transmission {
+  static constexpr RecordKind kKind = RecordKind::kTransmission;
+  EventWord header;
+  std::uint64_t ticks;
+  std::uint64_t begin_ticks;  // its first byte left
+  std::uint64_t end_ticks;    // its last one was there
+  std::uint64_t bytes;        // with what the network adds
+  std::int32_t receiver;      // world rank
+  std::uint32_t reserved;
+};
+static_assert(sizeof(Transmission) == 48);
+
 /// The thread ended; frames open now were left.
 struct ThreadEnd {
   static constexpr RecordKind kKind = RecordKind::kThreadEnd;

@@ -1,0 +1,91 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Simulated runs: the same hash every time, the picture of a real run, archives that every command reads, clear errors.
+# usage: simulate.sh STIPPLE RAYTRACER
+set -eu
+stipple=$1
+raytracer=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+. "$(dirname "$(realpath "$0")")/../../mpi_environment.sh"
+cd "$work"
+fail() { echo "FAIL: $*"; exit 1; }
+scene="--scene teapot --scene-size 3 --resolution 64x64 --samples 1"
+
+# usage: simulate NAME MACHINE NODES [OPTIONS...] -- RAYTRACER'S OPTIONS: its JSON in NAME.json, its picture in NAME.png
+simulate() {
+  name=$1 machine=$2 nodes=$3
+  shift 3
+  own=
+  while [ "$1" != -- ]; do own="$own $1"; shift; done
+  shift
+  "$stipple" simulate --machine "$machine" --nodes "$nodes" $own -o "$name.stipple" --json \
+    -- raytracer $scene "$@" --output "$name.png" > "$name.json" 2> "$name.err" || { cat "$name.err"; fail "$name does not run"; }
+}
+same() { cmp -s "$1.json" "$2.json" || { cat "$1.json" "$2.json"; fail "$1 and $2 differ"; }; }
+differs() { ! cmp -s "$1.json" "$2.json" || fail "$1 and $2 are the same"; }
+figure() { sed -nE "s/.*\"$2\":\"?([^,\"}]*).*/\1/p" "$1.json"; }
+
+"$raytracer" $scene --output real.png > real.txt
+
+# On demand, on eight nodes and a host: the same time and hash again and again, also under load.
+simulate first ipsc2 8 -- --partition bundles --bundle 64
+simulate second ipsc2 8 -- --partition bundles --bundle 64
+(while :; do :; done) & load=$!
+simulate third ipsc2 8 -- --partition bundles --bundle 64
+kill $load
+same first second
+same first third
+test "$(figure first messages)" = 144 || fail "$(figure first messages) messages: two for each of 64 bundles and of 8 nodes"
+test "$(figure first hash | wc -c)" = 65 || fail "hash '$(figure first hash)'"
+
+# Every partition and machine: one picture. The iPSC's host collects always.
+simulate tiled ipsc2 8 -- --partition tiled
+simulate five ipsc860 5 -- --partition scattered
+simulate alone ipsc2 1 -- --partition bundles
+simulate modern modern 8 -- --partition scattered
+simulate served modern 8 -- --partition bundles --bundle 64
+for name in first tiled five alone modern served; do
+  cmp real.png $name.png || fail "$name has another picture"
+  "$stipple" check $name.stipple > check.txt || { cat check.txt; fail "$name.stipple is not sound"; }
+done
+"$stipple" stats tiled.stipple --table messages | grep -q host || fail "tiled on an iPSC has no host"
+! "$stipple" stats modern.stipple --table messages | grep -q host || fail "scattered on a cluster has a host"
+
+# Parameters act.
+simulate slow_host ipsc2 8 --host-overhead 0.05 -- --partition bundles --bundle 64
+simulate twice ipsc2 8 --work-scale 2 -- --partition bundles --bundle 64
+simulate watched ipsc2 8 --event-cost 0.0001 -- --partition bundles --bundle 64
+for name in slow_host twice watched; do
+  differs first $name
+  awk -v less="$(figure first simulated_s)" -v more="$(figure $name simulated_s)" 'BEGIN { exit !(more > less) }' \
+    || fail "$name is not slower"
+done
+
+# What the machine tells of itself.
+"$stipple" info first.stipple | grep -q 'virtual time' || fail "no virtual time"
+"$stipple" stats first.stipple --table states --format csv > states.csv
+awk -F, 'NR > 1 && ($3 == "" || $3 <= 0 || $4 < 0 || $5 < 0) { bad = 1 } END { exit bad || NR != 10 }' states.csv \
+  || { cat states.csv; fail "states"; }
+"$stipple" stats first.stipple --table syscalls | grep -q 'start send' || fail "no system call for a start-up"
+"$stipple" print first.stipple --ranks 0 > events.txt
+test "$(grep -c 'transmission of .* bytes to' events.txt)" -ge 9 || fail "no transmissions"
+grep -q 'blocked' events.txt || fail "no switch for a wait"
+"$stipple" report first.stipple -o first.html > report.txt
+grep -q raytracer first.html
+
+# Errors name what is wrong and what is known.
+refuses() { # WORDS OPTIONS...
+  words=$1
+  shift
+  status=0
+  "$stipple" simulate -o none.stipple --overwrite "$@" > out.txt 2> err.txt || status=$?
+  test $status = 2 || fail "status $status for $*"
+  grep -q -e "$words" err.txt || { cat err.txt; fail "no '$words' for $*"; }
+}
+refuses 'known are' --machine cray --nodes 8 -- raytracer
+refuses 'from 1 to 128' --machine ipsc2 --nodes 129 -- raytracer
+refuses 'not built for simulated' --machine ipsc2 --nodes 8 -- ls
+test ! -e none.stipple || fail "an archive of what was refused"
+refuses 'counts no tests' --machine ipsc2 --nodes 2 -- raytracer --kernel embree
+echo "simulated runs are what they were"
