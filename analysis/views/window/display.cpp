@@ -21,7 +21,9 @@ std::string AskServer(const std::string& name) {
   if (display == nullptr) return "the X server at DISPLAY=" + name + " does not answer";
   int error = 0, event = 0;
   const bool has_glx = glXQueryExtension(display, &error, &event) != 0;
-  XCloseDisplay(display);
+  // The connection stays: a server whose last client leaves begins anew, and the window's own
+  // connection, opened at that moment, would be lost.
+  [[maybe_unused]] static Display* const kKept = display;
   return has_glx ? "" : "the X server at DISPLAY=" + name + " cannot do OpenGL (no GLX)";
 }
 
