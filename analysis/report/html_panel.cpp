@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/views/layout.h"
 #include "analysis/views/svg.h"
 #include "analysis/views/svg_write.h"
 
@@ -41,7 +42,11 @@ std::string PanelText(const Panel& panel, const Scene& scene) {
   if (named.id.empty()) named.id = scene.name;
   if (named.note.empty()) named.note = scene.note;
   if (named.beside.empty() && scene.key.size() > 1) named.beside = KeyText(scene.key);
-  return PanelAround(named, "<figure>" + DrawSvg(scene) + "</figure>");
+  // A narrow picture is not blown up to the whole width.
+  const std::string limit = named.style == "main" && scene.width < kMainWidth
+                                ? fmt::format(" style=\"max-width:{:.0f}px\"", scene.width)
+                                : "";
+  return PanelAround(named, "<figure" + limit + ">" + DrawSvg(scene) + "</figure>");
 }
 
 std::string PanelWithout(const Panel& panel, std::string_view sentence) {
