@@ -24,6 +24,7 @@ void WritePng(const Image& image, const std::string& path) {
   png.width = static_cast<png_uint_32>(image.size.width);
   png.height = static_cast<png_uint_32>(image.size.height);
   png.format = PNG_FORMAT_RGB;
+  png.flags = PNG_IMAGE_FLAG_FAST;  // while one rank writes, the others wait
   if (png_image_write_to_file(&png, path.c_str(), 0, image.rgb.data(), 0, nullptr) == 0)
     throw InputError(path, 0, fmt::format("cannot be written: {}", png.message));
 }
