@@ -82,6 +82,12 @@ GuidedBundles::GuidedBundles(const std::vector<std::uint64_t>& costs,
   }
 }
 
+std::vector<std::uint32_t> GuidedBundles::Counts() const {
+  std::vector<std::uint32_t> counts;
+  for (std::uint32_t node = 0; node < Nodes(); ++node) counts.push_back(Count(node));
+  return counts;
+}
+
 std::vector<std::uint32_t> GuidedBundles::TilesOf(GuidedBundle bundle) const {
   const Share& share = nodes_[bundle.node];
   const std::size_t begin = bundle.number == 0 ? 0 : share.ends[bundle.number - 1];

@@ -51,6 +51,8 @@ class GuidedBundles {
   std::uint32_t Count(std::uint32_t node) const {
     return static_cast<std::uint32_t>(nodes_[node].ends.size());
   }
+  /// Of each node.
+  std::vector<std::uint32_t> Counts() const;
   std::uint32_t Nodes() const { return static_cast<std::uint32_t>(nodes_.size()); }
   /// In the order in which they are to be traced.
   std::vector<std::uint32_t> TilesOf(GuidedBundle bundle) const;

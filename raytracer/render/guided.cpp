@@ -129,10 +129,8 @@ Rendered RenderGuided(const World& world, Sampler& sampler, const PartitionChoic
   if (costs.empty()) costs = TracePilot(world, sampler, work, round, found);
   const NodeMap nodes = MapNodes(world);
   const GuidedBundles bundles(work.Costs(costs), nodes.ranks);
-  std::vector<std::uint32_t> counts(bundles.Nodes());
-  for (std::uint32_t node = 0; node < bundles.Nodes(); ++node) counts[node] = bundles.Count(node);
   // It outlives the collecting: the last of its users lets go of it, and nobody has to wait before.
-  WorkCounter counter(world, nodes, counts);
+  WorkCounter counter(world, nodes, bundles.Counts());
   std::vector<GuidedBundle> taken;
   Progress progress(PointCount(choice.raster) / static_cast<std::size_t>(world.size),
                     world.rank == 0);

@@ -21,10 +21,7 @@ PointSupply::PointSupply(const World& world, Mail& mail, const RayPartitionEntry
       // Nobody knows what a tile costs: where objects are divided, other ranks pay for it as well.
       nodes_ = MapNodes(world);
       guided_.emplace(std::vector<std::uint64_t>(tiles_.count(), 1), nodes_.ranks);
-      std::vector<std::uint32_t> counts(guided_->Nodes());
-      for (std::uint32_t node = 0; node < guided_->Nodes(); ++node)
-        counts[node] = guided_->Count(node);
-      counter_ = std::make_unique<WorkCounter>(world, nodes_, counts);
+      counter_ = std::make_unique<WorkCounter>(world, nodes_, guided_->Counts());
       break;
   }
 }
