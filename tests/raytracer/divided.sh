@@ -3,13 +3,7 @@
 # Objects divided among ranks give the serial program's picture, byte for byte, and its rays, whatever the partition of the
 # rays, the size of packages and the number of ranks; and a scene that fits on no rank is refused with numbers.
 # usage: divided.sh RAYTRACER MPIEXEC
-set -eu
-raytracer=$1
-mpiexec=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-. "$(dirname "$(realpath "$0")")/../mpi_environment.sh"
-cd "$work"
+. "$(dirname "$(realpath "$0")")/begin.sh"
 
 # usage: serial OPTIONS...
 serial() {

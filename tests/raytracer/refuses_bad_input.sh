@@ -2,13 +2,7 @@
 # SPDX-License-Identifier: MIT
 # Unusable input ends with exit status 2 and one message, however many ranks saw it.
 # usage: refuses_bad_input.sh RAYTRACER MPIEXEC
-set -eu
-raytracer=$1
-mpiexec=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-. "$(dirname "$(realpath "$0")")/../mpi_environment.sh"
-cd "$work"
+. "$(dirname "$(realpath "$0")")/begin.sh"
 printf 'v from 0 0 9 at 0 0 0 up 0 1 0 angle 45 resolution 8 8\ns 0 0 0 1\ns 1 1 1 0\n' > bad.nff
 
 # usage: refuse EXPECTED-MESSAGE COMMAND...

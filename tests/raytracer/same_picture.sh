@@ -3,13 +3,7 @@
 # One picture, byte for byte, whatever the partition, bundle, selection and number of ranks; and counts that do not depend
 # on them either.
 # usage: same_picture.sh RAYTRACER MPIEXEC
-set -eu
-raytracer=$1
-mpiexec=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-. "$(dirname "$(realpath "$0")")/../mpi_environment.sh"
-cd "$work"
+. "$(dirname "$(realpath "$0")")/begin.sh"
 scene="--scene teapot --scene-size 3 --resolution 48x40"
 
 "$raytracer" $scene --output serial.png --cost-map serial.csv --stats serial.json > serial.txt

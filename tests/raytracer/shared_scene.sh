@@ -3,13 +3,7 @@
 # A large scene gives one picture however it came: generated or read, from the cache or not, on one rank or on three that
 # share it.
 # usage: shared_scene.sh RAYTRACER MPIEXEC
-set -eu
-raytracer=$1
-mpiexec=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-. "$(dirname "$(realpath "$0")")/../mpi_environment.sh"
-cd "$work"
+. "$(dirname "$(realpath "$0")")/begin.sh"
 export XDG_CACHE_HOME="$work/cache"
 generated="--scene rings --scene-size 17" file="--scene rings.nff"
 size="--resolution 24x20"
