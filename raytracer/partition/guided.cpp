@@ -46,6 +46,12 @@ std::vector<RasterPoint> Tiles::Points(std::uint32_t tile) const {
   return PointsIn(TileAt(tile), raster_);
 }
 
+std::size_t Tiles::Size(std::uint32_t tile) const {
+  const Tile at = TileAt(tile);
+  return static_cast<std::size_t>(at.x_end - at.x_begin) *
+         static_cast<std::size_t>(at.y_end - at.y_begin);
+}
+
 RasterPoint Tiles::Middle(std::uint32_t tile) const {
   const Tile at = TileAt(tile);
   return static_cast<RasterPoint>((at.y_begin + at.y_end) / 2 * raster_.width +

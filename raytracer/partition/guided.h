@@ -26,6 +26,7 @@ class Tiles {
   std::uint32_t count() const { return across_ * down_; }
   /// Row by row.
   std::vector<RasterPoint> Points(std::uint32_t tile) const;
+  std::size_t Size(std::uint32_t tile) const;
   /// The point whose cost stands for the tile's.
   RasterPoint Middle(std::uint32_t tile) const;
 

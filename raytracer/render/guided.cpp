@@ -46,7 +46,9 @@ class Work {
   /// What each tile costs in this round, from what one of its points did.
   std::vector<std::uint64_t> Costs(const std::vector<std::uint64_t>& of_point) const {
     std::vector<std::uint64_t> costs(of_point);
-    for (std::uint32_t tile = 0; tile < tiles_.count(); ++tile) costs[tile] *= Of(tile).size();
+    // The first round has all points: they need not be listed to be counted.
+    for (std::uint32_t tile = 0; tile < tiles_.count(); ++tile)
+      costs[tile] *= pilot_ ? tiles_.Size(tile) - 1 : Of(tile).size();
     return costs;
   }
   std::uint32_t tiles() const { return tiles_.count(); }
