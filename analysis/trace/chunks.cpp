@@ -8,7 +8,9 @@
 #include <array>
 #include <cstddef>
 #include <cstring>
+#include <filesystem>
 #include <span>
+#include <system_error>
 #include <utility>
 
 namespace stipple {
@@ -175,11 +177,21 @@ bool CopyChunk(Stream& stream, const LiveChunk& live, Chunk& chunk) {
   return true;
 }
 
+/// Whether a chunk before the last one is missing, for now or for ever. Chunks are in order.
+bool LacksAChunk(const std::vector<LiveChunk>& chunks) {
+  return chunks.front().header.sequence != 0 ||
+         std::ranges::adjacent_find(chunks, [](const LiveChunk& a, const LiveChunk& b) {
+           return b.header.sequence > a.header.sequence + 1;
+         }) != chunks.end();
+}
+
 /// Chunks of one thread, by sequence, of equal ones the first in the file; up to the first gap. The
-/// last one is copied. False: it went on too fast.
-bool TakeThread(Stream& stream, std::vector<LiveChunk>& chunks, FoundChunks& found) {
+/// last one is copied. False: it went on too fast, or copied one to where only a `grown` file
+/// reaches.
+bool TakeThread(Stream& stream, std::vector<LiveChunk>& chunks, bool grown, FoundChunks& found) {
   std::ranges::sort(chunks, {},
                     [](const LiveChunk& c) { return std::pair(c.header.sequence, c.offset); });
+  const bool lacks = LacksAChunk(chunks);
   std::size_t last = 0;  // first of those with the highest sequence before a gap
   for (std::size_t i = 1; i < chunks.size(); ++i) {
     const std::uint64_t step = chunks[i].header.sequence - chunks[i - 1].header.sequence;
@@ -190,7 +202,7 @@ bool TakeThread(Stream& stream, std::vector<LiveChunk>& chunks, FoundChunks& fou
   Chunk chunk;
   for (std::size_t i = last; i < chunks.size() && taken.empty(); ++i)
     if (CopyChunk(stream, chunks[i], chunk)) taken.push_back(chunk);
-  const bool whole = !taken.empty();
+  const bool whole = !taken.empty() && !(lacks && grown);
   // Of a thread that has lost its first chunks the others can be dropped, too, at any moment.
   const bool drops = chunks.front().header.sequence != 0;
   for (std::size_t i = last; i-- > 0;) {
@@ -261,7 +273,7 @@ FoundChunks FindChunks(Stream& stream) {
 // from the end of the file to its begin, copies before windows: what a window says then is true of
 // every copy that was seen. A chunk that is not a thread's last one never changes. The last one is
 // copied word by word, and the copy counts only if the window is still the same one behind it.
-FoundChunks FindLiveChunks(Stream& stream, bool& whole) {
+FoundChunks FindLiveChunks(Stream& stream, const std::string& path, bool& whole) {
   const Bytes file = stream.file.bytes();
   const std::vector<std::size_t> places = PlacesOf(file);
   std::map<std::uint32_t, std::vector<LiveChunk>> threads;
@@ -274,9 +286,12 @@ FoundChunks FindLiveChunks(Stream& stream, bool& whole) {
     if (c.header.kind == ChunkKind::kKernel)
       Add(found, ChunkAt(file, c.offset, c.header), ChunkKind::kKernel);
   }
+  // The file grows before anything is copied to its new end.
+  std::error_code none;
+  const bool grown = std::filesystem::file_size(path, none) > file.size();
   whole = true;
   for (auto& [number, chunks] : threads) {
-    const bool taken = TakeThread(stream, chunks, found);
+    const bool taken = TakeThread(stream, chunks, grown, found);
     whole = whole && taken;
   }
   for (const auto& [number, thread] : found.threads)

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <map>
+#include <string>
 #include <vector>
 
 #include "analysis/trace/stream.h"
@@ -21,10 +22,10 @@ struct FoundChunks {
 /// Chunks of a file that stays as it is; what is damaged is told to the stream's health.
 FoundChunks FindChunks(Stream& stream);
 
-/// Chunks of events of a file that is being written: for each thread all that it had committed at
-/// one moment, without gaps; the chunks that may still change are copied. False in `whole`: a
-/// thread was too fast, and its last chunks are not there.
-FoundChunks FindLiveChunks(Stream& stream, bool& whole);
+/// Chunks of events of the file at `path` that is being written, mapped by `stream`: for each
+/// thread all that it had committed at one moment, without gaps; the chunks that may still change
+/// are copied. False in `whole`: a thread was too fast, and its last chunks are not there.
+FoundChunks FindLiveChunks(Stream& stream, const std::string& path, bool& whole);
 
 /// The pages of a chunk that was read need not stay resident; when they are read again they come
 /// back.

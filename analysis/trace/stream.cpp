@@ -472,7 +472,7 @@ std::unique_ptr<Stream> ReadLiveStream(const std::string& path, TraceHealth& hea
       health.Add(Defect::kStillRunning, file_name);
       return nullptr;
     }
-    found = FindLiveChunks(*stream, whole);
+    found = FindLiveChunks(*stream, path, whole);
   }
   // Events refer to definitions that were written before them: these are looked for afterwards, in
   // a file that may have grown.
