@@ -79,7 +79,7 @@ void WriteText(const std::string& text, const std::string& path) {
 }
 
 /// What the picture lacks at most, be it written or not.
-LossBound WritePicture(const Raster& raster, ImageSize image, const Options& options) {
+LossBound WritePicture(RasterView raster, ImageSize image, const Options& options) {
   if (options.output.empty()) return LossOf(raster, image, options.samples);
   if (options.output.ends_with(".exr")) {
     const auto [picture, loss] = LinearPictureOf(raster, image, options.samples);
@@ -91,7 +91,7 @@ LossBound WritePicture(const Raster& raster, ImageSize image, const Options& opt
   return loss;
 }
 
-void WriteCostMap(const Raster& raster, ImageSize image, const Options& options) {
+void WriteCostMap(RasterView raster, ImageSize image, const Options& options) {
   if (options.cost_map.ends_with(".png"))
     WritePng(CostImageOf(raster, image, options.samples), options.cost_map);
   else if (!options.cost_map.empty())
@@ -127,7 +127,7 @@ void Adapt(const World& world, const SceneFacts& facts, const Options& options) 
 }
 
 /// What is left when the picture is there.
-void Finish(const World& world, const Raster& raster, ImageSize image, RunReport run,
+void Finish(const World& world, RasterView raster, ImageSize image, RunReport run,
             RankReport report, const std::string& kept_in, const Options& options) {
   OnRank(world, AssemblingRank(world, options.partition), [&] {
     Mark(Moment::kOutputBegins);
@@ -163,7 +163,7 @@ void RenderReplicated(const World& world, const Options& options) {
   report.render_cpu_s = watch.LapCpu();
   report.counts = rendered.counts;
   report.messages = rendered.messages;
-  Finish(world, rendered.raster, scene.view.resolution,
+  Finish(world, rendered.points, scene.view.resolution,
          {shared.model.objects.size(), facts.model_bytes, 0, 0, 0, {}}, report, shared.kept_in,
          options);
 }
@@ -218,7 +218,7 @@ void RenderPartitioned(const World& world, bool fill, const Options& options) {
   report.counts = divided.rendered.counts;
   report.messages = divided.rendered.messages;
   report.travel = divided.travel;
-  Finish(world, divided.rendered.raster, image,
+  Finish(world, divided.rendered.points, image,
          {facts.Objects(), facts.model_bytes, facts.parts, facts.copies, predicted, {}}, report, "",
          options);
 }

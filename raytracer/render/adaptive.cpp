@@ -41,7 +41,7 @@ std::vector<double> Smoothed(const std::vector<double>& values, std::size_t coun
 
 }  // namespace
 
-Doubling WorthDoubling(const std::vector<RayResult>& raster, ImageSize image, double tolerance) {
+Doubling WorthDoubling(std::span<const RayResult> raster, ImageSize image, double tolerance) {
   std::vector<double> variances;
   variances.reserve(raster.size());
   for (const RayResult& result : raster) variances.push_back(VarianceOf(result));

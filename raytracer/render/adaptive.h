@@ -19,6 +19,7 @@
 #define STIPPLE_RAYTRACER_RENDER_ADAPTIVE_H
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "raytracer/render/tracer.h"
@@ -34,7 +35,7 @@ using Doubling = std::vector<std::uint8_t>;
 
 /// `tolerance`: a ray is worth tracing if it is expected to lower a pixel's squared error (of 1)
 /// by more than about tolerance^2.
-Doubling WorthDoubling(const std::vector<RayResult>& raster, ImageSize image, double tolerance);
+Doubling WorthDoubling(std::span<const RayResult> raster, ImageSize image, double tolerance);
 
 }  // namespace stipple::raytracer
 

@@ -90,13 +90,14 @@ class Host {
   std::uint64_t messages_ = 0;
 };
 
-[[gnu::noinline]] std::uint64_t Serve(const World& world, const PartitionChoice& choice,
-                                      const Round& round, Raster& raster) {
+[[gnu::noinline]] Rendered Serve(const World& world, const PartitionChoice& choice,
+                                 const Round& round) {
   MarkHost();
   Host host(world, choice, round);
   host.Serve();
-  raster = host.TakeRaster();
-  return host.messages();
+  Rendered rendered(host.TakeRaster());
+  rendered.messages = host.messages();
+  return rendered;
 }
 
 [[gnu::noinline]] std::uint64_t TraceOnDemand(const World& world, Sampler& sampler,
@@ -121,11 +122,9 @@ class Host {
 
 Rendered RenderBundles(const World& world, Sampler& sampler, const PartitionChoice& choice,
                        const Round& round) {
+  if (world.rank == world.size - 1) return Serve(world, choice, round);
   Rendered rendered;
-  if (world.rank == world.size - 1)
-    rendered.messages = Serve(world, choice, round, rendered.raster);
-  else
-    rendered.messages = TraceOnDemand(world, sampler, choice, round);
+  rendered.messages = TraceOnDemand(world, sampler, choice, round);
   return rendered;
 }
 

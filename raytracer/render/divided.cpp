@@ -414,11 +414,11 @@ DividedRender RenderDivided(const World& world, RankTracer<Real>* tracer,
   DividedRender divided;
   Mail mail(world);
   if (tracer == nullptr) {
-    divided.rendered.raster = Serve(mail, choice);
+    divided.rendered = Rendered(Serve(mail, choice));
   } else {
     Worker<Real> worker(world, mail, *tracer, choice);
     worker.Run();
-    divided.rendered.raster = worker.TakeRaster();
+    divided.rendered = Rendered(worker.TakeRaster());
     divided.rendered.counts = tracer->counts();
     divided.travel = worker.travel();
   }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Bundles without a master. The pilot's rays are part of the picture, divided among all ranks; what
 // they cost is added up everywhere, and from it every rank knows all bundles. From then on a rank
-// needs nobody to get work, and sends once: which bundles it had, and what it found.
+// needs nobody to get work. Ranks on rank 0's node put what they find where rank 0 will read it;
+// one on another node sends once: which bundles it had, and what it found.
 #include <numeric>
 
+#include "raytracer/render/machine.h"
 #include "raytracer/render/marks.h"
 #include "raytracer/render/progress.h"
 #include "raytracer/render/render.h"
@@ -60,20 +62,58 @@ class Work {
   bool pilot_;
 };
 
+/// The raster of a round as far as this rank can reach it.
+class Reached {
+ public:
+  /// Every rank of `node` makes it. `with_rank_0`: it is rank 0's.
+  Reached(const World& world, const Node& node, bool with_rank_0, std::size_t points) {
+    if (with_rank_0 && RanksShareMemory())
+      rendered_.shared = NodeMemory(node, points * sizeof(RayResult));
+    const std::span<std::byte> block = rendered_.shared.block();
+    if (!block.empty()) {
+      points_ = {reinterpret_cast<RayResult*>(block.data()), points};
+      sharing_ = node.size();
+      if (world.rank == 0) rendered_.points = points_;
+    } else if (world.rank == 0) {
+      rendered_ = Rendered(Raster(points));
+      points_ = rendered_.points;
+    }
+  }
+  /// Empty if rank 0 is out of reach.
+  std::span<RayResult> points() const { return points_; }
+  /// How many ranks have to send what they find, if this is rank 0.
+  int Apart(const World& world) const { return world.size - sharing_; }
+  /// When all that share it have come here, what they found is seen by all of them.
+  Rendered Take() {
+    if (!rendered_.shared.block().empty()) rendered_.shared.Publish();
+    return std::move(rendered_);
+  }
+
+ private:
+  Rendered rendered_;
+  std::span<RayResult> points_;
+  int sharing_ = 1;
+};
+
 [[gnu::noinline]] void TracePoints(Sampler& sampler, const std::vector<RasterPoint>& points,
-                                   const Round& round, std::vector<RayResult>& found) {
-  for (const RasterPoint point : points) found.push_back(round.Trace(sampler, point));
+                                   const Round& round, Found& found) {
+  for (const RasterPoint point : points) found.Put(point, round.Trace(sampler, point));
   RecordCounts(sampler.counts());
 }
 
 /// What a point of each tile costs.
-std::vector<std::uint64_t> TracePilot(const World& world, Sampler& sampler, const Work& work,
-                                      const Round& round, std::vector<RayResult>& found) {
+[[gnu::noinline]] std::vector<std::uint64_t> TracePilot(const World& world, Sampler& sampler,
+                                                        const Work& work, const Round& round,
+                                                        Found& found) {
   std::vector<std::uint64_t> costs(work.tiles());
-  TracePoints(sampler, work.Pilot(world.rank), round, found);
-  for (std::size_t i = 0; i < found.size(); ++i)
-    costs[static_cast<std::size_t>(world.rank) + i * static_cast<std::size_t>(world.size)] =
-        found[i].work;
+  auto tile = static_cast<std::size_t>(world.rank);
+  for (const RasterPoint point : work.Pilot(world.rank)) {
+    const RayResult result = round.Trace(sampler, point);
+    found.Put(point, result);
+    costs[tile] = result.work;
+    tile += static_cast<std::size_t>(world.size);
+  }
+  RecordCounts(sampler.counts());
   MPI_Allreduce(MPI_IN_PLACE, costs.data(), static_cast<int>(costs.size()), MPI_UINT64_T, MPI_SUM,
                 world.comm);
   return costs;
@@ -90,14 +130,11 @@ std::vector<RasterPoint> PointsTaken(const Work& work, const GuidedBundles& bund
   return points;
 }
 
-[[gnu::noinline]] Raster Collect(const World& world, const Work& work, const GuidedBundles& bundles,
-                                 std::size_t points, const std::vector<GuidedBundle>& taken,
-                                 const std::vector<RayResult>& found) {
-  Mark(Moment::kAssembleBegins);
+/// Takes what `left` ranks send.
+[[gnu::noinline]] void Collect(const World& world, const Work& work, const GuidedBundles& bundles,
+                               int left, std::span<RayResult> raster) {
   const ResultType type;
-  Raster raster(points);
-  Place(PointsTaken(work, bundles, 0, taken), found, raster);
-  for (int left = world.size - 1; left > 0; --left) {
+  for (; left > 0; --left) {
     MPI_Status status;
     MPI_Probe(MPI_ANY_SOURCE, kTakenTag, world.comm, &status);
     int bytes = 0;
@@ -111,7 +148,6 @@ std::vector<RasterPoint> PointsTaken(const Work& work, const GuidedBundles& bund
              kFoundTag, world.comm, MPI_STATUS_IGNORE);
     Place(where, results, raster);
   }
-  return raster;
 }
 
 void SendFound(const World& world, const std::vector<GuidedBundle>& taken,
@@ -127,9 +163,11 @@ void SendFound(const World& world, const std::vector<GuidedBundle>& taken,
 Rendered RenderGuided(const World& world, Sampler& sampler, const PartitionChoice& choice,
                       const Round& round, std::vector<std::uint64_t>& costs) {
   const Work work(world, choice, round, costs.empty());
-  std::vector<RayResult> found;
+  const Node node(world.comm);
+  const NodeMap nodes = MapNodes(world, node);
+  Reached raster(world, node, nodes.own == 0, PointCount(choice.raster));
+  Found found(raster.points());
   if (costs.empty()) costs = TracePilot(world, sampler, work, round, found);
-  const NodeMap nodes = MapNodes(world);
   const GuidedBundles bundles(work.Costs(costs), nodes.ranks);
   // It outlives the collecting: the last of its users lets go of it, and nobody has to wait before.
   WorkCounter counter(world, nodes, bundles.Counts());
@@ -142,11 +180,12 @@ Rendered RenderGuided(const World& world, Sampler& sampler, const PartitionChoic
     taken.push_back(*bundle);
     progress.Advance(points.size());
   }
-  Rendered rendered;
+  if (world.rank == 0) Mark(Moment::kAssembleBegins);
+  Rendered rendered = raster.Take();
   if (world.rank == 0) {
-    rendered.raster = Collect(world, work, bundles, PointCount(choice.raster), taken, found);
-  } else {
-    SendFound(world, taken, found);
+    Collect(world, work, bundles, raster.Apart(world), rendered.points);
+  } else if (raster.points().empty()) {
+    SendFound(world, taken, found.kept());
     rendered.messages = 2;
   }
   return rendered;

@@ -20,6 +20,9 @@ class WorkMeter {
 /// Whether the last rank is no node but the machine's host, which collects whatever the partition.
 bool MachineHasHost();
 
+/// Whether what one rank of a node writes can be seen by the others.
+bool RanksShareMemory();
+
 }  // namespace stipple::raytracer
 
 #endif

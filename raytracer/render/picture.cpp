@@ -30,7 +30,7 @@ double MeanOf(std::int64_t sum, std::int64_t rays) {
 /// Tells `use` all rays of each pixel: those of its point, or of its four corners. A pixel at a
 /// time: all of them would be as large as the raster.
 template <class Use>
-void ForEachPixel(const Raster& raster, ImageSize image, Samples samples, Use use) {
+void ForEachPixel(RasterView raster, ImageSize image, Samples samples, Use use) {
   const int width = RasterOf(image, samples).width;
   const int reach = samples.corners() ? 1 : 0;
   for (int y = 0; y < image.height; ++y)
@@ -53,8 +53,7 @@ void Bound(const RayResult& pixel, double pixels, LossBound& bound) {
 
 /// A picture whose components are `component(sum, rays)`.
 template <class Pixels, class Component>
-Bounded<Pixels> Develop(const Raster& raster, ImageSize image, Samples samples,
-                        Component component) {
+Bounded<Pixels> Develop(RasterView raster, ImageSize image, Samples samples, Component component) {
   Bounded<Pixels> made{{image, {}}, {}};
   const std::size_t pixels = Index(0, image.height, image.width);
   made.picture.rgb.reserve(3 * pixels);
@@ -73,7 +72,7 @@ struct PixelCost {
   std::uint32_t depth = 0;
 };
 
-std::vector<PixelCost> CostsOf(const Raster& raster, ImageSize image, Samples samples) {
+std::vector<PixelCost> CostsOf(RasterView raster, ImageSize image, Samples samples) {
   const ImageSize size = RasterOf(image, samples);
   std::vector<PixelCost> costs(Index(0, image.height, image.width));
   for (int y = 0; y < size.height; ++y) {
@@ -93,17 +92,17 @@ std::vector<PixelCost> CostsOf(const Raster& raster, ImageSize image, Samples sa
 
 }  // namespace
 
-Bounded<Image> PictureOf(const Raster& raster, ImageSize image, Samples samples) {
+Bounded<Image> PictureOf(RasterView raster, ImageSize image, Samples samples) {
   return Develop<Image>(raster, image, samples, ToByte);
 }
 
-Bounded<LinearImage> LinearPictureOf(const Raster& raster, ImageSize image, Samples samples) {
+Bounded<LinearImage> LinearPictureOf(RasterView raster, ImageSize image, Samples samples) {
   return Develop<LinearImage>(raster, image, samples, [](std::int64_t sum, std::int64_t rays) {
     return static_cast<float>(MeanOf(sum, rays));
   });
 }
 
-LossBound LossOf(const Raster& raster, ImageSize image, Samples samples) {
+LossBound LossOf(RasterView raster, ImageSize image, Samples samples) {
   LossBound bound;
   const auto pixels = static_cast<double>(Index(0, image.height, image.width));
   ForEachPixel(raster, image, samples,
@@ -111,7 +110,7 @@ LossBound LossOf(const Raster& raster, ImageSize image, Samples samples) {
   return bound;
 }
 
-Image CostImageOf(const Raster& raster, ImageSize image, Samples samples) {
+Image CostImageOf(RasterView raster, ImageSize image, Samples samples) {
   const std::vector<PixelCost> costs = CostsOf(raster, image, samples);
   std::uint64_t dearest = 1;
   for (const PixelCost& cost : costs) dearest = std::max(dearest, cost.work);
@@ -125,7 +124,7 @@ Image CostImageOf(const Raster& raster, ImageSize image, Samples samples) {
   return picture;
 }
 
-std::string CostTableOf(const Raster& raster, ImageSize image, Samples samples) {
+std::string CostTableOf(RasterView raster, ImageSize image, Samples samples) {
   const std::vector<PixelCost> costs = CostsOf(raster, image, samples);
   std::string table = "x,y,work,object,in_shadow,depth\n";
   for (int y = 0; y < image.height; ++y) {

@@ -25,24 +25,24 @@ struct Bounded {
 };
 
 /// The mean of the rays of each pixel, in integers throughout.
-Bounded<Image> PictureOf(const Raster& raster, ImageSize image, Samples samples);
+Bounded<Image> PictureOf(RasterView raster, ImageSize image, Samples samples);
 
 /// The same means, not limited to what a byte can hold.
-Bounded<LinearImage> LinearPictureOf(const Raster& raster, ImageSize image, Samples samples);
+Bounded<LinearImage> LinearPictureOf(RasterView raster, ImageSize image, Samples samples);
 
 /// Without a picture.
-LossBound LossOf(const Raster& raster, ImageSize image, Samples samples);
+LossBound LossOf(RasterView raster, ImageSize image, Samples samples);
 
 /// From dark violet to yellow (viridis) by the root of a pixel's work, yellow for the dearest: in
 /// proportion to the work itself most pixels of most scenes would be alike. With corner rays a
 /// corner's work goes to the pixel below and to the right of it, or the last one in the row or
 /// column.
-Image CostImageOf(const Raster& raster, ImageSize image, Samples samples);
+Image CostImageOf(RasterView raster, ImageSize image, Samples samples);
 
 /// CSV with the columns x,y,work,object,in_shadow,depth, one row per pixel. Object is the object's
 /// number in the scene, -1 for background; object and in_shadow are those of the pixel's first ray.
 /// Work and depth over the rays of the pixel.
-std::string CostTableOf(const Raster& raster, ImageSize image, Samples samples);
+std::string CostTableOf(RasterView raster, ImageSize image, Samples samples);
 
 }  // namespace stipple::raytracer
 

@@ -19,7 +19,7 @@ PointSupply::PointSupply(const World& world, Mail& mail, const RayPartitionEntry
       break;
     case Supply::kCounter:
       // Nobody knows what a tile costs: where objects are divided, other ranks pay for it as well.
-      nodes_ = MapNodes(world);
+      nodes_ = MapNodes(world, Node(world.comm));
       guided_.emplace(std::vector<std::uint64_t>(tiles_.count(), 1), nodes_.ranks);
       counter_ = std::make_unique<WorkCounter>(world, nodes_, guided_->Counts());
       break;

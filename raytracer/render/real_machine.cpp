@@ -9,4 +9,6 @@ WorkMeter::~WorkMeter() = default;
 
 bool MachineHasHost() { return false; }
 
+bool RanksShareMemory() { return true; }
+
 }  // namespace stipple::raytracer

@@ -14,30 +14,26 @@ constexpr int kShareTag = 1;
 constexpr std::size_t kPointsPerRecord =
     4096;  // counters of a static share are recorded this often
 
-[[gnu::noinline]] std::vector<RayResult> TraceShare(const World& world, Sampler& sampler,
-                                                    const std::vector<RasterPoint>& points,
-                                                    const Round& round) {
-  std::vector<RayResult> results;
-  results.reserve(points.size());
+[[gnu::noinline]] void TraceShare(const World& world, Sampler& sampler,
+                                  const std::vector<RasterPoint>& points, const Round& round,
+                                  Found& found) {
   Progress progress(points.size(), world.rank == 0);
+  std::size_t traced = 0;
   for (const RasterPoint point : points) {
-    results.push_back(round.Trace(sampler, point));
-    if (results.size() % kPointsPerRecord == 0) RecordCounts(sampler.counts());
+    found.Put(point, round.Trace(sampler, point));
+    if (++traced % kPointsPerRecord == 0) RecordCounts(sampler.counts());
     progress.Advance(1);
   }
   RecordCounts(sampler.counts());
-  return results;
 }
 
-/// Rank 0 or the host computes which points each share has; only results travel.
-[[gnu::noinline]] Raster AssembleShares(const World& world, RayPartition partition,
-                                        const PartitionChoice& choice, const Round& round,
-                                        const std::vector<RayResult>& own) {
+/// Rank 0 or the host computes which points the others' shares have; only results travel.
+[[gnu::noinline]] void AssembleShares(const World& world, RayPartition partition,
+                                      const PartitionChoice& choice, const Round& round,
+                                      std::span<RayResult> raster) {
   if (world.has_host) MarkHost();
   Mark(Moment::kAssembleBegins);
   const ResultType type;
-  Raster raster(PointCount(choice.raster));
-  if (!world.has_host) Place(round.Of(partition(choice, 0, world.Nodes())), own, raster);
   for (int rank = world.has_host ? 0 : 1; rank < world.Nodes(); ++rank) {
     const std::vector<RasterPoint> points = round.Of(partition(choice, rank, world.Nodes()));
     std::vector<RayResult> results(points.size());
@@ -45,7 +41,6 @@ constexpr std::size_t kPointsPerRecord =
              world.comm, MPI_STATUS_IGNORE);
     Place(points, results, raster);
   }
-  return raster;
 }
 
 Rendered RenderRound(const World& world, Sampler& sampler, std::string_view partition,
@@ -60,7 +55,7 @@ Rendered RenderRound(const World& world, Sampler& sampler, std::string_view part
 }
 
 /// What the rank that has the picture decides, on every rank; false when nothing is left to do.
-bool ChooseDoubling(const World& world, int assembling, const Raster& raster, ImageSize image,
+bool ChooseDoubling(const World& world, int assembling, RasterView raster, ImageSize image,
                     double tolerance, Doubling& doubling) {
   if (world.rank == assembling) doubling = WorthDoubling(raster, image, tolerance);
   doubling.resize(PointCount(image));
@@ -93,7 +88,7 @@ ResultType::ResultType() {
 ResultType::~ResultType() { MPI_Type_free(&type_); }
 
 void Place(const std::vector<RasterPoint>& points, const std::vector<RayResult>& results,
-           Raster& raster) {
+           std::span<RayResult> raster) {
   for (std::size_t i = 0; i < points.size(); ++i) raster[points[i]] = results[i];
 }
 
@@ -104,20 +99,21 @@ int AssemblingRank(const World& world, std::string_view partition) {
 
 Rendered RenderShares(const World& world, Sampler& sampler, RayPartition partition,
                       const PartitionChoice& choice, const Round& round) {
-  Rendered rendered;
   const int assembling = world.has_host ? world.size - 1 : 0;
-  std::vector<RayResult> results;
+  Rendered rendered;
+  if (world.rank == assembling) rendered = Rendered(Raster(PointCount(choice.raster)));
+  Found found(rendered.points);
   if (world.rank < world.Nodes())
-    results =
-        TraceShare(world, sampler, round.Of(partition(choice, world.rank, world.Nodes())), round);
+    TraceShare(world, sampler, round.Of(partition(choice, world.rank, world.Nodes())), round,
+               found);
   if (world.rank == assembling) {
-    rendered.raster = AssembleShares(world, partition, choice, round, results);
-  } else {
-    const ResultType type;
-    MPI_Send(results.data(), static_cast<int>(results.size()), type.get(), assembling, kShareTag,
-             world.comm);
-    rendered.messages = 1;
+    AssembleShares(world, partition, choice, round, rendered.points);
+    return rendered;
   }
+  const ResultType type;
+  MPI_Send(found.kept().data(), static_cast<int>(found.kept().size()), type.get(), assembling,
+           kShareTag, world.comm);
+  rendered.messages = 1;
   return rendered;
 }
 
@@ -128,12 +124,12 @@ Rendered Render(const World& world, Sampler& sampler, std::string_view partition
   Rendered rendered = RenderRound(world, sampler, partition, choice, {}, costs);
   Doubling doubling;
   while (samples.adaptive &&
-         ChooseDoubling(world, AssemblingRank(world, partition), rendered.raster, choice.raster,
+         ChooseDoubling(world, AssemblingRank(world, partition), rendered.points, choice.raster,
                         samples.tolerance, doubling)) {
     const Rendered more = RenderRound(world, sampler, partition, choice, Round(doubling), costs);
     rendered.messages += more.messages;
-    for (std::size_t point = 0; point < more.raster.size(); ++point)
-      if (doubling[point] != 0) Add(more.raster[point], rendered.raster[point]);
+    for (std::size_t point = 0; point < more.points.size(); ++point)
+      if (doubling[point] != 0) Add(more.points[point], rendered.points[point]);
   }
   rendered.counts = sampler.counts();
   return rendered;

@@ -4,6 +4,7 @@
 #define STIPPLE_RAYTRACER_RENDER_RENDER_H
 
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -12,15 +13,24 @@
 #include "raytracer/render/adaptive.h"
 #include "raytracer/render/sampling.h"
 #include "raytracer/render/world.h"
+#include "raytracer/scene/node_memory.h"
 
 namespace stipple::raytracer {
 
-/// What every rank found at the points of the raster; on the assembling rank only, empty elsewhere.
+/// What was found at each point of the raster.
 using Raster = std::vector<RayResult>;
+using RasterView = std::span<const RayResult>;
 
 struct Rendered {
-  Raster raster;
-  RayCounts counts;            // of this rank
+  Rendered() = default;
+  /// On the assembling rank.
+  explicit Rendered(Raster raster) : own(std::move(raster)), points(own) {}
+
+  Raster own;         // memory of `points`,
+  NodeMemory shared;  // or where the ranks of a node put them themselves
+  std::span<RayResult>
+      points;        // what every rank found; on the assembling rank only, empty elsewhere
+  RayCounts counts;  // of this rank
   std::uint64_t messages = 0;  // this rank sent
 };
 
@@ -49,6 +59,23 @@ class Round {
   Doubling doubling_;  // empty: the first round
 };
 
+/// What this rank finds: in the raster, or in the order in which it was found.
+class Found {
+ public:
+  explicit Found(std::span<RayResult> raster) : raster_(raster) {}
+  void Put(RasterPoint point, const RayResult& result) {
+    if (raster_.empty())
+      kept_.push_back(result);
+    else
+      raster_[point] = result;
+  }
+  const std::vector<RayResult>& kept() const { return kept_; }
+
+ private:
+  std::span<RayResult> raster_;
+  std::vector<RayResult> kept_;
+};
+
 // The ways to do one round; Render chooses.
 
 /// Every rank knows its points beforehand; rank 0 collects.
@@ -65,7 +92,7 @@ Rendered RenderGuided(const World& world, Sampler& sampler, const PartitionChoic
 
 /// Puts results where their points are.
 void Place(const std::vector<RasterPoint>& points, const std::vector<RayResult>& results,
-           Raster& raster);
+           std::span<RayResult> raster);
 
 /// RayResult in messages.
 class ResultType {

@@ -4,12 +4,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "raytracer/scene/node_memory.h"
-
 namespace stipple::raytracer {
 
-NodeMap MapNodes(const World& world) {
-  const Node node(world.comm);
+NodeMap MapNodes(const World& world, const Node& node) {
   int leader = world.rank;
   MPI_Bcast(&leader, 1, MPI_INT, 0, node.comm());
   std::vector<int> leader_of(static_cast<std::size_t>(world.size));

@@ -16,6 +16,7 @@
 
 #include "raytracer/partition/guided.h"
 #include "raytracer/render/world.h"
+#include "raytracer/scene/node_memory.h"
 
 namespace stipple::raytracer {
 
@@ -26,8 +27,8 @@ struct NodeMap {
   std::uint32_t own = 0;    // this rank's node
 };
 
-/// Every rank calls it.
-NodeMap MapNodes(const World& world);
+/// `node`: this rank's. Every rank calls it.
+NodeMap MapNodes(const World& world, const Node& node);
 
 class WorkCounter {
  public:

@@ -98,6 +98,9 @@ WorkMeter::~WorkMeter() {
 
 bool MachineHasHost() { return simulate::ThisNode().has_host; }
 
+// Each rank is a computer of its own, whose results travel in messages.
+bool RanksShareMemory() { return false; }
+
 }  // namespace stipple::raytracer
 
 // The program's own questions for the time.
