@@ -22,7 +22,7 @@ namespace {
 
 enum Tag : int {
   kRays = 10,  // RayPackage
-  kCredit,     // packages of the receiver's that were worked off: std::uint32_t
+  kCredit,     // packages of the receiver's have been worked off: Standing
   kFound,      // FoundParts, to the assembling rank
   kLast,       // the sender has found all it will
   kSignal,     // DetectorSignal
@@ -38,6 +38,9 @@ constexpr std::size_t kCredits = 8;
 
 // Rays between two looks for letters.
 constexpr int kRaysPerLook = 16;
+
+// No eye ray is begun while so many full packages cannot be sent: what is under way takes memory.
+constexpr std::size_t kMostPackagesHere = 64;
 
 /// Detectors by number: each sees its own signals only.
 struct DetectorSignal {
@@ -97,7 +100,9 @@ struct Neighbour {
   std::deque<std::size_t> under_way;      // packages to it, not worked off: rays
   std::deque<std::size_t> packages;       // of it, not worked off: rays
   std::size_t followed = 0;               // rays of the first of them
-  std::uint32_t worked_off = 0;           // packages that it has not been told of
+  std::size_t held = 0;                   // its rays, not followed
+  Standing standing;                      // that it has not been told of
+  std::uint32_t told = 0;                 // rays that waited for it when it last told
 };
 
 template <class Real>
@@ -133,7 +138,7 @@ class Worker {
       Detect([this](auto& detector, const RankState& state, Signals& out) {
         detector.Advance(state, out);
       });
-      if (!ended_ && !HasWork()) TakeLetter(true);
+      if (!ended_ && queue_.size() == 0 && (supply_.left() == 0 || HoldsMany())) TakeLetter(true);
       until_look = 0;
     }
     Finish();
@@ -144,14 +149,17 @@ class Worker {
 
  private:
   bool HasWork() const { return queue_.size() > 0 || supply_.left() > 0; }
+  bool HoldsMany() const { return full_here_ >= kMostPackagesHere; }
 
   /// False if there is no ray here.
   bool FollowOne() {
     if (queue_.size() == 0) return false;
     auto [ray, from] = queue_.Pop();
+    if (from >= 0) --neighbours_[static_cast<std::size_t>(from)].held;
     more_.clear();
     RayResult found;
     const RasterPoint point = ray.point;
+    waiting_[static_cast<std::size_t>(world_.rank)] = queue_.size();
     const int next = tracer_.Advance(ray, waiting_, more_, found);
     if (next != RankTracer<Real>::kEnded) Forward(ray, next);
     for (const Traveller<Real>& one : more_) queue_.Push(one, -1);
@@ -162,6 +170,7 @@ class Worker {
   }
 
   bool BeginPoint() {
+    if (HoldsMany()) return false;
     const std::optional<RasterPoint> point = supply_.Next();
     if (!point) return false;
     RayResult found;
@@ -180,7 +189,9 @@ class Worker {
       neighbour.outgoing.emplace_back();
     neighbour.outgoing.back().Add(ray);
     ++waiting_[static_cast<std::size_t>(to)];
-    if (IsFull(neighbour.outgoing.back())) SendFull(to);
+    if (!IsFull(neighbour.outgoing.back())) return;
+    ++full_here_;
+    SendFull(to);
   }
 
   bool IsFull(const RayPackage<Real>& package) const { return package.rays() == choice_.package; }
@@ -201,10 +212,11 @@ class Worker {
   void SendPackage(int to) {
     Neighbour<Real>& neighbour = neighbours_[static_cast<std::size_t>(to)];
     RayPackage<Real>& package = neighbour.outgoing.front();
-    mail_.Post(to, kRays, package.Ready(std::exchange(neighbour.worked_off, 0)));
+    mail_.Post(to, kRays, package.Ready(StandingFor(neighbour)));
     neighbour.under_way.push_back(package.rays());
     ++travel_.packages_sent;
     travel_.rays_sent += package.rays();
+    if (IsFull(package)) --full_here_;
     neighbour.outgoing.pop_front();
     Record();
   }
@@ -221,16 +233,24 @@ class Worker {
 
   void SendCredit(int to) {
     Neighbour<Real>& neighbour = neighbours_[static_cast<std::size_t>(to)];
-    if (neighbour.worked_off > 0) mail_.Post(to, kCredit, std::exchange(neighbour.worked_off, 0));
+    if (neighbour.standing.worked_off > 0) mail_.Post(to, kCredit, StandingFor(neighbour));
   }
 
-  /// So many packages have been worked off by `from`.
-  void TakeCredit(int from, std::uint32_t packages) {
+  Standing StandingFor(Neighbour<Real>& neighbour) const {
+    Standing standing = std::exchange(neighbour.standing, {});
+    standing.waiting = static_cast<std::uint32_t>(queue_.size() - neighbour.held);
+    return standing;
+  }
+
+  void TakeStanding(int from, const Standing& standing) {
     Neighbour<Real>& neighbour = neighbours_[static_cast<std::size_t>(from)];
-    for (; packages > 0; --packages) {
-      waiting_[static_cast<std::size_t>(from)] -= neighbour.under_way.front();
+    std::uint64_t& waiting = waiting_[static_cast<std::size_t>(from)];
+    for (std::uint32_t package = 0; package < standing.worked_off; ++package) {
+      waiting -= neighbour.under_way.front();
       neighbour.under_way.pop_front();
     }
+    waiting += standing.waiting;
+    waiting -= std::exchange(neighbour.told, standing.waiting);
     SendFull(from);
   }
 
@@ -239,7 +259,7 @@ class Worker {
     if (++neighbour.followed < neighbour.packages.front()) return;
     neighbour.followed = 0;
     neighbour.packages.pop_front();
-    if (++neighbour.worked_off == kCredits / 2) SendCredit(from);
+    if (++neighbour.standing.worked_off == kCredits / 2) SendCredit(from);
   }
 
   void Keep(RasterPoint point, const RayResult& found) {
@@ -298,7 +318,7 @@ class Worker {
         TakeRays(letter);
         break;
       case kCredit:
-        TakeCredit(letter.from, letter.Of<std::uint32_t>().front());
+        TakeStanding(letter.from, letter.Of<Standing>().front());
         break;
       case kFound:
         assembly_->Take(letter.Of<FoundPart>());
@@ -325,11 +345,13 @@ class Worker {
     if (ended_) StopAll("rays came after their end was found");
     const PackageHeader header = Unpack(letter.body, tracer_, more_);
     for (const Traveller<Real>& ray : more_) queue_.Push(ray, letter.from);
-    neighbours_[static_cast<std::size_t>(letter.from)].packages.push_back(more_.size());
+    Neighbour<Real>& neighbour = neighbours_[static_cast<std::size_t>(letter.from)];
+    neighbour.packages.push_back(more_.size());
+    neighbour.held += more_.size();
     ++packages_received_;
     travel_.rays_received += more_.size();
     travel_.most_held = std::max<std::uint64_t>(travel_.most_held, queue_.size());
-    if (header.worked_off > 0) TakeCredit(letter.from, header.worked_off);
+    TakeStanding(letter.from, header.standing);
     Record();
   }
 
@@ -371,6 +393,7 @@ class Worker {
   RayQueue<Real> queue_;
   std::vector<Neighbour<Real>> neighbours_;
   std::vector<std::uint64_t> waiting_;  // rays for each rank, as far as this one knows
+  std::size_t full_here_ = 0;           // packages that cannot be sent yet
   std::vector<Traveller<Real>> more_;
   FoundParts found_;
   std::optional<Assembly> assembly_;

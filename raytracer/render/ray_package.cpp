@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "raytracer/render/ray_package.h"
 
+#include <array>
+
 namespace stipple::raytracer {
 namespace {
 
@@ -17,12 +19,25 @@ enum Flag : std::uint8_t {
 constexpr std::size_t kColorBytes = 6;
 static_assert(kBrightest * static_cast<double>(kFixedOne) < 0x1p47);
 
-template <class Thing>
-void Put(std::vector<std::byte>& bytes, const Thing& thing, std::size_t count = sizeof(Thing)) {
-  const std::size_t at = bytes.size();
-  bytes.resize(at + count);
-  std::memcpy(bytes.data() + at, &thing, count);
-}
+/// Writes where there is room for a ray.
+class Writer {
+ public:
+  explicit Writer(std::byte* place) : next_(place) {}
+
+  template <class Thing>
+  void Put(const Thing& thing) {
+    std::memcpy(next_, &thing, sizeof thing);
+    next_ += sizeof thing;
+  }
+  void PutColor(std::int64_t color) {
+    std::memcpy(next_, &color, kColorBytes);
+    next_ += kColorBytes;
+  }
+  std::byte* end() const { return next_; }
+
+ private:
+  std::byte* next_;
+};
 
 class Reader {
  public:
@@ -90,30 +105,34 @@ std::size_t RayPackage<Real>::MostBytes(std::size_t rays) {
 template <class Real>
 void RayPackage<Real>::Add(const Traveller<Real>& ray) {
   const std::uint8_t flags = FlagsOf(ray);
-  Put(bytes_, flags);
-  Put(bytes_, ray.point);
-  Put(bytes_, ray.seen);
+  std::array<std::byte, sizeof ray> place;
+  Writer to(place.data());
+  to.Put(flags);
+  to.Put(ray.point);
+  to.Put(ray.seen);
   if ((flags & kFromEye) != 0) {
-    Put(bytes_, ray.eye_ray);
+    to.Put(ray.eye_ray);
   } else {
-    Put(bytes_, ray.ray);
+    to.Put(ray.ray);
     if (ray.to_light) {
-      Put(bytes_, ray.t);
-      for (const std::int64_t color : {ray.gain.red, ray.gain.green, ray.gain.blue})
-        Put(bytes_, color, kColorBytes);
+      to.Put(ray.t);
+      to.PutColor(ray.gain.red);
+      to.PutColor(ray.gain.green);
+      to.PutColor(ray.gain.blue);
     } else {
-      Put(bytes_, ray.throughput);
-      Put(bytes_, ray.depth);
+      to.Put(ray.throughput);
+      to.Put(ray.depth);
     }
   }
   if ((flags & kMet) != 0) {
-    Put(bytes_, ray.t);
-    Put(bytes_, ray.object);
-    Put(bytes_, ray.material);
-    Put(bytes_, ray.normals.face);
-    if ((flags & kSmooth) != 0) Put(bytes_, ray.normals.shading);
+    to.Put(ray.t);
+    to.Put(ray.object);
+    to.Put(ray.material);
+    to.Put(ray.normals.face);
+    if ((flags & kSmooth) != 0) to.Put(ray.normals.shading);
   }
-  if ((flags & kInMedia) != 0) Put(bytes_, ray.media);
+  if ((flags & kInMedia) != 0) to.Put(ray.media);
+  bytes_.insert(bytes_.end(), place.data(), to.end());
   ++header_.rays;
 }
 

@@ -16,10 +16,16 @@
 
 namespace stipple::raytracer {
 
+/// What the sender tells the receiver about itself.
+struct Standing {
+  std::uint32_t worked_off = 0;  // packages of the receiver's, since it was last told
+  std::uint32_t waiting = 0;     // rays here that others than the receiver have sent, or nobody
+};
+
 /// Before the rays of a package.
 struct PackageHeader {
   std::uint32_t rays = 0;
-  std::uint32_t worked_off = 0;  // packages of the receiver's
+  Standing standing;
 };
 
 template <class Real>
@@ -30,8 +36,8 @@ class RayPackage {
   void Add(const Traveller<Real>& ray);
   std::size_t rays() const { return header_.rays; }
   /// As it is sent.
-  std::span<const std::byte> Ready(std::uint32_t worked_off) {
-    header_.worked_off = worked_off;
+  std::span<const std::byte> Ready(Standing standing) {
+    header_.standing = standing;
     std::memcpy(bytes_.data(), &header_, sizeof header_);
     return bytes_;
   }

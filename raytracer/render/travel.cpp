@@ -65,7 +65,8 @@ class RankTracerIn final : public RankTracer<Real> {
     for (; ray.seen < way_.size(); ++ray.seen) {
       const LeafOnWay& next = way_[ray.seen];
       if (static_cast<double>(ray.t) < next.enter) break;
-      if (!parts_.holding.Holds(rank_, next.leaf))
+      if (!parts_.holding.Holds(rank_, next.leaf) ||
+          (!ray.arrived && parts_.holding.OthersHaveFewer(next.leaf, waiting, rank_)))
         return parts_.holding.Next(std::span(way_).subspan(ray.seen), waiting, ray.point);
       const std::uint64_t before = shader_.counts().Work();
       if (ray.to_light)
