@@ -15,13 +15,14 @@
 #include "raytracer/render/marks.h"
 #include "raytracer/render/point_supply.h"
 #include "raytracer/render/progress.h"
+#include "raytracer/render/ray_package.h"
 
 namespace stipple::raytracer {
 namespace {
 
 enum Tag : int {
-  kRays = 10,  // Traveller<Real>s
-  kCredit,     // packages of the receiver's that were worked off: std::uint32_t
+  kRays = 10,  // RayPackage
+  kCredit,     // packages of the receiver's have been worked off: Standing
   kFound,      // FoundParts, to the assembling rank
   kLast,       // the sender has found all it will
   kSignal,     // DetectorSignal
@@ -31,11 +32,15 @@ enum Tag : int {
 };
 
 // Packages that one rank may send to another before the first of them is worked off. Half of them
-// are acknowledged at a time.
-constexpr std::uint32_t kCredits = 8;
+// are acknowledged at a time, or with the next package that goes back, or by who has nothing else
+// to do.
+constexpr std::size_t kCredits = 8;
 
 // Rays between two looks for letters.
 constexpr int kRaysPerLook = 16;
+
+// No eye ray is begun while so many full packages cannot be sent: what is under way takes memory.
+constexpr std::size_t kMostPackagesHere = 64;
 
 /// Detectors by number: each sees its own signals only.
 struct DetectorSignal {
@@ -91,12 +96,13 @@ class RayQueue {
 /// What lies between this rank and one other.
 template <class Real>
 struct Neighbour {
-  std::vector<Traveller<Real>> outgoing;
-  std::uint32_t credits = kCredits;
-  std::uint64_t sent = 0;            // packages to it
-  std::deque<std::size_t> packages;  // of it, not worked off: rays
-  std::size_t followed = 0;          // rays of the first of them
-  std::uint32_t worked_off = 0;      // packages that it has not been told of
+  std::deque<RayPackage<Real>> outgoing;  // all but the last are full
+  std::deque<std::size_t> under_way;      // packages to it, not worked off: rays
+  std::deque<std::size_t> packages;       // of it, not worked off: rays
+  std::size_t followed = 0;               // rays of the first of them
+  std::size_t held = 0;                   // its rays, not followed
+  Standing standing;                      // that it has not been told of
+  std::uint32_t told = 0;                 // rays that waited for it when it last told
 };
 
 template <class Real>
@@ -111,6 +117,7 @@ class Worker {
         assembling_(AssemblingRank(world, choice.partition)),
         supply_(world, mail, row_, choice.points, kAsk),
         neighbours_(static_cast<std::size_t>(choice.holders)),
+        waiting_(static_cast<std::size_t>(choice.holders)),
         four_counters_(world.rank, choice.holders),
         safra_(world.rank, choice.holders),
         progress_(PointCount(choice.points.raster) / static_cast<std::size_t>(choice.holders),
@@ -131,7 +138,7 @@ class Worker {
       Detect([this](auto& detector, const RankState& state, Signals& out) {
         detector.Advance(state, out);
       });
-      if (!ended_ && !HasWork()) TakeLetter(true);
+      if (!ended_ && queue_.size() == 0 && (supply_.left() == 0 || HoldsMany())) TakeLetter(true);
       until_look = 0;
     }
     Finish();
@@ -142,15 +149,18 @@ class Worker {
 
  private:
   bool HasWork() const { return queue_.size() > 0 || supply_.left() > 0; }
+  bool HoldsMany() const { return full_here_ >= kMostPackagesHere; }
 
   /// False if there is no ray here.
   bool FollowOne() {
     if (queue_.size() == 0) return false;
     auto [ray, from] = queue_.Pop();
+    if (from >= 0) --neighbours_[static_cast<std::size_t>(from)].held;
     more_.clear();
     RayResult found;
     const RasterPoint point = ray.point;
-    const int next = tracer_.Advance(ray, more_, found);
+    waiting_[static_cast<std::size_t>(world_.rank)] = queue_.size();
+    const int next = tracer_.Advance(ray, waiting_, more_, found);
     if (next != RankTracer<Real>::kEnded) Forward(ray, next);
     for (const Traveller<Real>& one : more_) queue_.Push(one, -1);
     travel_.most_held = std::max<std::uint64_t>(travel_.most_held, queue_.size());
@@ -160,6 +170,7 @@ class Worker {
   }
 
   bool BeginPoint() {
+    if (HoldsMany()) return false;
     const std::optional<RasterPoint> point = supply_.Next();
     if (!point) return false;
     RayResult found;
@@ -168,37 +179,79 @@ class Worker {
     for (const Traveller<Real>& ray : more_) queue_.Push(ray, -1);
     Keep(*point, found);
     progress_.Advance(1);
-    if (supply_.left() == 0) RecordCounts(tracer_.counts());
+    if (supply_.left() == 0) Record();
     return true;
   }
 
   void Forward(const Traveller<Real>& ray, int to) {
     Neighbour<Real>& neighbour = neighbours_[static_cast<std::size_t>(to)];
-    neighbour.outgoing.push_back(ray);
-    if (neighbour.outgoing.size() >= choice_.package) SendPackage(to);
+    if (neighbour.outgoing.empty() || IsFull(neighbour.outgoing.back()))
+      neighbour.outgoing.emplace_back();
+    neighbour.outgoing.back().Add(ray);
+    ++waiting_[static_cast<std::size_t>(to)];
+    if (!IsFull(neighbour.outgoing.back())) return;
+    ++full_here_;
+    SendFull(to);
   }
 
-  /// As many rays as fit into a package; false if the receiver has enough.
-  bool SendPackage(int to) {
+  bool IsFull(const RayPackage<Real>& package) const { return package.rays() == choice_.package; }
+
+  /// As many as the receiver may get.
+  void SendFull(int to) {
     Neighbour<Real>& neighbour = neighbours_[static_cast<std::size_t>(to)];
-    if (neighbour.credits == 0) return false;
-    --neighbour.credits;
-    ++neighbour.sent;
-    std::vector<Traveller<Real>>& rays = neighbour.outgoing;
-    const std::size_t count = std::min(rays.size(), choice_.package);
-    const auto first = rays.end() - static_cast<std::ptrdiff_t>(count);
-    mail_.Post(to, kRays, std::span<const Traveller<Real>>(first, rays.end()));
-    rays.erase(first, rays.end());
-    ++travel_.packages_sent;
-    travel_.rays_sent += count;
-    return true;
+    while (!neighbour.outgoing.empty() && IsFull(neighbour.outgoing.front()) &&
+           neighbour.under_way.size() < kCredits)
+      SendPackage(to);
   }
 
-  /// Packages that are not full, too: nothing else will come to fill them.
+  void Record() const {
+    RecordCounts(tracer_.counts());
+    RecordTravel(queue_.size(), travel_.rays_received, travel_.rays_sent);
+  }
+
+  void SendPackage(int to) {
+    Neighbour<Real>& neighbour = neighbours_[static_cast<std::size_t>(to)];
+    RayPackage<Real>& package = neighbour.outgoing.front();
+    mail_.Post(to, kRays, package.Ready(StandingFor(neighbour)));
+    neighbour.under_way.push_back(package.rays());
+    ++travel_.packages_sent;
+    travel_.rays_sent += package.rays();
+    if (IsFull(package)) --full_here_;
+    neighbour.outgoing.pop_front();
+    Record();
+  }
+
+  /// Packages that are not full, too, as nothing else will come to fill them: to those who have
+  /// worked off all that they have got of this rank. Others have work, and will tell when not.
   void SendRest() {
-    for (int to = 0; to < choice_.holders; ++to)
-      while (!neighbours_[static_cast<std::size_t>(to)].outgoing.empty() && SendPackage(to)) {
-      }
+    for (int to = 0; to < choice_.holders; ++to) {
+      Neighbour<Real>& neighbour = neighbours_[static_cast<std::size_t>(to)];
+      if (!neighbour.outgoing.empty() && neighbour.under_way.empty()) SendPackage(to);
+      SendCredit(to);
+    }
+  }
+
+  void SendCredit(int to) {
+    Neighbour<Real>& neighbour = neighbours_[static_cast<std::size_t>(to)];
+    if (neighbour.standing.worked_off > 0) mail_.Post(to, kCredit, StandingFor(neighbour));
+  }
+
+  Standing StandingFor(Neighbour<Real>& neighbour) const {
+    Standing standing = std::exchange(neighbour.standing, {});
+    standing.waiting = static_cast<std::uint32_t>(queue_.size() - neighbour.held);
+    return standing;
+  }
+
+  void TakeStanding(int from, const Standing& standing) {
+    Neighbour<Real>& neighbour = neighbours_[static_cast<std::size_t>(from)];
+    std::uint64_t& waiting = waiting_[static_cast<std::size_t>(from)];
+    for (std::uint32_t package = 0; package < standing.worked_off; ++package) {
+      waiting -= neighbour.under_way.front();
+      neighbour.under_way.pop_front();
+    }
+    waiting += standing.waiting;
+    waiting -= std::exchange(neighbour.told, standing.waiting);
+    SendFull(from);
   }
 
   void Acknowledge(int from) {
@@ -206,9 +259,7 @@ class Worker {
     if (++neighbour.followed < neighbour.packages.front()) return;
     neighbour.followed = 0;
     neighbour.packages.pop_front();
-    if (++neighbour.worked_off < kCredits / 2) return;
-    mail_.Post(from, kCredit, neighbour.worked_off);
-    neighbour.worked_off = 0;
+    if (++neighbour.standing.worked_off == kCredits / 2) SendCredit(from);
   }
 
   void Keep(RasterPoint point, const RayResult& found) {
@@ -266,13 +317,9 @@ class Worker {
       case kRays:
         TakeRays(letter);
         break;
-      case kCredit: {
-        Neighbour<Real>& neighbour = neighbours_[static_cast<std::size_t>(letter.from)];
-        neighbour.credits += letter.Of<std::uint32_t>().front();
-        while (neighbour.outgoing.size() >= choice_.package && SendPackage(letter.from)) {
-        }
+      case kCredit:
+        TakeStanding(letter.from, letter.Of<Standing>().front());
         break;
-      }
       case kFound:
         assembly_->Take(letter.Of<FoundPart>());
         break;
@@ -295,14 +342,17 @@ class Worker {
   }
 
   void TakeRays(const Letter& letter) {
-    const std::vector<Traveller<Real>> rays = letter.Of<Traveller<Real>>();
     if (ended_) StopAll("rays came after their end was found");
-    for (const Traveller<Real>& ray : rays) queue_.Push(ray, letter.from);
-    neighbours_[static_cast<std::size_t>(letter.from)].packages.push_back(rays.size());
+    const PackageHeader header = Unpack(letter.body, tracer_, more_);
+    for (const Traveller<Real>& ray : more_) queue_.Push(ray, letter.from);
+    Neighbour<Real>& neighbour = neighbours_[static_cast<std::size_t>(letter.from)];
+    neighbour.packages.push_back(more_.size());
+    neighbour.held += more_.size();
     ++packages_received_;
-    travel_.rays_received += rays.size();
+    travel_.rays_received += more_.size();
     travel_.most_held = std::max<std::uint64_t>(travel_.most_held, queue_.size());
-    RecordTravel(queue_.size(), travel_.rays_received, travel_.rays_sent);
+    TakeStanding(letter.from, header.standing);
+    Record();
   }
 
   void TakeSignal(const DetectorSignal& signal) {
@@ -319,7 +369,7 @@ class Worker {
   /// What was found goes to the assembling rank; that waits for all.
   void Finish() {
     SendFound();
-    RecordCounts(tracer_.counts());
+    Record();
     if (!assembly_) {
       mail_.Post(assembling_, kLast, std::span<const std::byte>());
     } else {
@@ -329,9 +379,8 @@ class Worker {
     while (!HasAllCredits()) TakeLetter(true);  // no letter may be left
   }
   bool HasAllCredits() const {
-    return std::ranges::all_of(neighbours_, [](const Neighbour<Real>& neighbour) {
-      return neighbour.credits == kCredits - neighbour.sent % (kCredits / 2);
-    });
+    return std::ranges::all_of(
+        neighbours_, [](const Neighbour<Real>& neighbour) { return neighbour.under_way.empty(); });
   }
 
   const World& world_;
@@ -343,6 +392,8 @@ class Worker {
   PointSupply supply_;
   RayQueue<Real> queue_;
   std::vector<Neighbour<Real>> neighbours_;
+  std::vector<std::uint64_t> waiting_;  // rays for each rank, as far as this one knows
+  std::size_t full_here_ = 0;           // packages that cannot be sent yet
   std::vector<Traveller<Real>> more_;
   FoundParts found_;
   std::optional<Assembly> assembly_;
@@ -412,7 +463,8 @@ DividedRender RenderDivided(const World& world, RankTracer<Real>* tracer,
                             const DividedChoice& choice) {
   Mark(Moment::kRenderBegins);
   DividedRender divided;
-  Mail mail(world);
+  Mail mail(world, std::max(RayPackage<Real>::MostBytes(choice.package),
+                            FoundParts::kMost * sizeof(FoundPart)));
   if (tracer == nullptr) {
     divided.rendered = Rendered(Serve(mail, choice));
   } else {

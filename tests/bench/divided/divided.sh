@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: MIT
+# Sourced by tests/bench/run. What dividing the objects costs on the simulated iPSC/2: at every share of the leaves that a
+# node holds, and by what is held at equal memory. Everything is a function of the arguments but the CPU seconds.
+
+# usage: divided NODES SCENE ARGUMENTS...: sets seconds (simulated), cpu, and the files $work/d and $work/d.txt
+divided() {
+  local nodes=$1 scene=$2 TIMEFORMAT='%U %S'
+  shift 2
+  { time "$build/bin/stipple" simulate --machine ipsc2 --nodes "$nodes" -o "$work/d.stipple" --overwrite \
+    -- raytracer --scene "$scene" --resolution 512x512 --samples 1 --partition bundles "$@" --stats "$work/d" \
+    > "$work/d.txt" 2>&1; } 2> "$work/d.time"
+  seconds=$(sed -nE 's/^simulated: ([0-9.]+) s.*/\1/p' "$work/d.txt")
+  cpu=$(awk '{ print $1 + $2 }' "$work/d.time")
+}
+
+# usage: times SECONDS FLOOR
+times() { awk -v a="$1" -v b="$2" 'BEGIN { printf "%.2f", a / b }'; }
+
+run_divided() {
+  [ -f "$build/lib/stipple/simulate/raytracer.so" ] || { echo "stipple simulate is not built: no SimGrid"; return; }
+  local scene k share choice whole seconds cpu most_cpu=0
+  echo "Simulated seconds over those of a copy on each of 16 nodes, bundles of 512 modulo, k of 16 leaves each."
+  for scene in teapot rings balls tree; do
+    divided 16 "$scene" --objects replicated --bundle 512 --select modulo
+    whole=$seconds
+    printf '  %-8s %.0f s' "$scene" "$whole"
+    for k in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16; do
+      divided 16 "$scene" --objects partitioned --replicate "$(times "$k" 16.0)" --bundle 512 --select modulo
+      printf ' %s' "$(times "$seconds" "$whole")"
+      most_cpu=$(awk -v a="$most_cpu" -v b="$cpu" 'BEGIN { print a > b ? a : b }')
+    done
+    echo
+  done
+  verdict "$most_cpu" 20 "the dearest of these runs, CPU s"
+  echo "Simulated seconds on 32 nodes over those of a copy on each, with so much of the scene's bytes on a node."
+  for scene in teapot rings balls tree; do
+    divided 32 "$scene" --objects replicated --bundle 512
+    whole=$seconds
+    for share in 0.25 0.5 0.75; do
+      printf '  %-8s %s' "$scene" "$share"
+      for choice in partitioned coupled; do
+        divided 32 "$scene" --objects "$choice" --replicate "$share" --bundle 512
+        printf ' %s %s (busiest %s)' "$choice" "$(times "$seconds" "$whole")" \
+          "$(sed -nE 's/.*over the mean: ([0-9.]+).*/\1/p' "$work/d.txt")"
+      done
+      echo
+    done
+  done
+}
