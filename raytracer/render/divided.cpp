@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <deque>
@@ -36,6 +37,14 @@ constexpr std::uint32_t kCredits = 8;
 
 // Rays between two looks for letters.
 constexpr int kRaysPerLook = 16;
+
+// A rank without work sends its packages as they are. A test is built with this switched off, to
+// see that all then wait for ever.
+#ifdef STIPPLE_KEEP_PART_FULL
+constexpr bool kSendsPartFull = false;
+#else
+constexpr bool kSendsPartFull = true;
+#endif
 
 /// Detectors by number: each sees its own signals only.
 struct DetectorSignal {
@@ -196,8 +205,10 @@ class Worker {
 
   /// Packages that are not full, too: nothing else will come to fill them.
   void SendRest() {
+    const std::size_t least = kSendsPartFull ? 1 : choice_.package;
     for (int to = 0; to < choice_.holders; ++to)
-      while (!neighbours_[static_cast<std::size_t>(to)].outgoing.empty() && SendPackage(to)) {
+      while (neighbours_[static_cast<std::size_t>(to)].outgoing.size() >= least &&
+             SendPackage(to)) {
       }
   }
 
@@ -412,7 +423,9 @@ DividedRender RenderDivided(const World& world, RankTracer<Real>* tracer,
                             const DividedChoice& choice) {
   Mark(Moment::kRenderBegins);
   DividedRender divided;
-  Mail mail(world);
+  // Most of what is sent is rays, or what they found; all else is short.
+  Mail mail(world, std::max(choice.package * sizeof(Traveller<Real>),
+                            FoundParts::kMost * sizeof(FoundPart)));
   if (tracer == nullptr) {
     divided.rendered.raster = Serve(mail, choice);
   } else {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 #include <list>
+#include <memory>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -31,7 +32,11 @@ struct Letter {
 
 class Mail {
  public:
-  explicit Mail(const World& world) : world_(world) {}
+  /// No letter is longer than `most_bytes`.
+  Mail(const World& world, std::size_t most_bytes)
+      : world_(world),
+        most_bytes_(most_bytes),
+        room_(std::make_unique_for_overwrite<std::byte[]>(most_bytes)) {}
   /// Waits until all that was posted has been taken over.
   ~Mail();
   Mail(const Mail&) = delete;
@@ -62,6 +67,8 @@ class Mail {
   void PostBytes(int to, int tag, std::span<const std::byte> bytes);
 
   const World& world_;
+  std::size_t most_bytes_;
+  std::unique_ptr<std::byte[]> room_;  // for the letter that comes
   std::list<Posted> under_way_;
   std::uint64_t posted_ = 0;
 };
