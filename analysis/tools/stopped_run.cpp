@@ -7,9 +7,12 @@
 #include <vector>
 
 #include "analysis/stats/number.h"
+#include "analysis/trace/demangle.h"
 
 namespace stipple {
 namespace {
+
+constexpr std::size_t kMostNames = 3;  // of functions inside each other
 
 struct Open {
   std::uint32_t region = 0;
@@ -33,14 +36,13 @@ std::vector<Open> OpenAtTheEnd(const Trace& trace, const Location& location) {
 
 std::string WhereItStopped(const Trace& trace, const Location& location) {
   const std::vector<Open> open = OpenAtTheEnd(trace, location);
-  const auto name = [&](const Open& visit) { return trace.regions()[visit.region].name; };
   if (open.empty()) return "had ended";
-  const std::string since =
-      fmt::format("{} since {:.6f} s", name(open.back()),
-                  static_cast<double>(trace.TimeNs(location, open.back().ticks)) * 1e-9);
-  if (trace.regions()[open.back().region].kind != RegionKind::kMpi) return "was in " + since;
-  if (open.size() == 1) return "waits in " + since;
-  return fmt::format("waits in {}, called by {}", since, name(open[open.size() - 2]));
+  const bool waits = trace.regions()[open.back().region].kind == RegionKind::kMpi;
+  std::string way;
+  for (std::size_t i = open.size(); i > open.size() - std::min(open.size(), kMostNames); --i)
+    way += (way.empty() ? "" : " < ") + ShortName(trace.regions()[open[i - 1].region].name);
+  return fmt::format("{} since {:.6f} s in {}", waits ? "waits" : "was",
+                     static_cast<double>(trace.TimeNs(location, open.back().ticks)) * 1e-9, way);
 }
 
 }  // namespace

@@ -9,8 +9,8 @@
 
 namespace stipple {
 
-/// A line per rank, the first `most_ranks` of them: the call of MPI that it was in, since when, and
-/// the function that called it; or the function that it was in outside of MPI.
+/// A line per rank, the first `most_ranks` of them: whether it waits in MPI, since when, and the
+/// innermost functions that it was in, each called by the next.
 std::string WhereRanksStopped(const Trace& trace, std::size_t most_ranks);
 
 }  // namespace stipple

@@ -107,7 +107,7 @@ int AwaitSender(int source, int tag, MPI_Comm comm) {
 
 extern "C" {
 
-int rename(const char* from, const char* to) noexcept {
+__attribute__((visibility("default"))) int rename(const char* from, const char* to) noexcept {
   int running = 0;
   PMPI_Initialized(&running);
   if (running != 0 && std::strstr(to, ".png") != nullptr) Luck().StrikeAtPicture();
