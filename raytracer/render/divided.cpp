@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <deque>
 #include <numeric>
 
@@ -38,13 +39,17 @@ constexpr std::uint32_t kCredits = 8;
 // Rays between two looks for letters.
 constexpr int kRaysPerLook = 16;
 
-// A rank without work sends its packages as they are. A test is built with this switched off, to
-// see that all then wait for ever.
-#ifdef STIPPLE_KEEP_PART_FULL
-constexpr bool kSendsPartFull = false;
+/// Whether a part of the protocol is there. In the build for tests one can be taken away, to see
+/// that it is missed.
+#ifdef STIPPLE_BREAKABLE
+bool Intact(std::string_view part) {
+  const char* broken = std::getenv("STIPPLE_BREAK");
+  return broken == nullptr || part != broken;
+}
 #else
-constexpr bool kSendsPartFull = true;
+constexpr bool Intact(std::string_view) { return true; }
 #endif
+constexpr std::string_view kPartFull = "part-full packages", kSecondWave = "second wave";
 
 /// Detectors by number: each sees its own signals only.
 struct DetectorSignal {
@@ -120,7 +125,7 @@ class Worker {
         assembling_(AssemblingRank(world, choice.partition)),
         supply_(world, mail, row_, choice.points, kAsk),
         neighbours_(static_cast<std::size_t>(choice.holders)),
-        four_counters_(world.rank, choice.holders),
+        four_counters_(world.rank, choice.holders, Intact(kSecondWave) ? 2 : 1),
         safra_(world.rank, choice.holders),
         progress_(PointCount(choice.points.raster) / static_cast<std::size_t>(choice.holders),
                   world.rank == 0) {
@@ -205,7 +210,7 @@ class Worker {
 
   /// Packages that are not full, too: nothing else will come to fill them.
   void SendRest() {
-    const std::size_t least = kSendsPartFull ? 1 : choice_.package;
+    const std::size_t least = Intact(kPartFull) ? 1 : choice_.package;
     for (int to = 0; to < choice_.holders; ++to)
       while (neighbours_[static_cast<std::size_t>(to)].outgoing.size() >= least &&
              SendPackage(to)) {
@@ -253,7 +258,11 @@ class Worker {
     };
     detect(0, four_counters_);
     detect(1, safra_);
-    if (world_.rank == 0 && four_counters_.ended() && safra_.ended()) End();
+    if (EndIsFound()) End();
+  }
+
+  bool EndIsFound() const {
+    return world_.rank == 0 && four_counters_.ended() && (safra_.ended() || !Intact(kSecondWave));
   }
 
   void End() {
@@ -324,7 +333,7 @@ class Worker {
     else
       safra_.Receive(signal.signal, state, out);
     for (const Signal& one : out) mail_.Post(one.to, kSignal, DetectorSignal{signal.detector, one});
-    if (world_.rank == 0 && four_counters_.ended() && safra_.ended()) End();
+    if (EndIsFound()) End();
   }
 
   /// What was found goes to the assembling rank; that waits for all.
