@@ -29,7 +29,7 @@ struct Options {
   std::int64_t seed = 1;
   std::string objects = "auto";
   double replicate = 0;
-  std::int64_t package = 64;
+  std::int64_t package = 128;
   Samples samples;
   double tolerance = Samples{}.tolerance;
   std::int64_t max_depth = 5;

@@ -26,6 +26,7 @@ constexpr CountRow kCounts[] = {
     {"refracted_rays", [](const RankReport& r) { return r.counts.refracted_rays; }},
     {"box_tests", [](const RankReport& r) { return r.counts.tests.box_tests; }},
     {"primitive_tests", [](const RankReport& r) { return r.counts.tests.primitive_tests; }},
+    {"repeated_tests", [](const RankReport& r) { return r.counts.repeated_tests; }},
     {"messages", [](const RankReport& r) { return r.messages; }},
 };
 

@@ -105,15 +105,21 @@ std::vector<std::uint32_t> Holding::LeavesOf(int rank) const {
   return leaves;
 }
 
-int Holding::Next(std::span<const LeafOnWay> way, std::uint32_t spread) const {
-  std::size_t farthest = 0;
-  std::uint32_t equals = 0;
+int Holding::Next(std::span<const LeafOnWay> way, std::span<const std::uint64_t> waiting,
+                  std::uint32_t spread) const {
+  const std::vector<int>& holders = holders_[way.front().leaf];
+  if (holders.size() == 1) return holders.front();
+  const auto waits = [&](int rank) { return waiting[static_cast<std::size_t>(rank)]; };
+  std::uint64_t few = waits(holders.front());
+  for (const int rank : holders) few = std::min(few, waits(rank));
   const auto follows = [&](int rank) {
     std::size_t leaves = 0;
+    if (waits(rank) >= few + kManyRays) return leaves;
     while (leaves < way.size() && Holds(rank, way[leaves].leaf)) ++leaves;
     return leaves;
   };
-  const std::vector<int>& holders = holders_[way.front().leaf];
+  std::size_t farthest = 0;
+  std::uint32_t equals = 0;
   for (const int rank : holders) {
     const std::size_t leaves = follows(rank);
     if (leaves > farthest) farthest = leaves, equals = 0;

@@ -44,9 +44,13 @@ class Holding {
   int ranks() const { return ranks_; }
   std::uint32_t leaves() const { return static_cast<std::uint32_t>(holders_.size()); }
 
-  /// The rank that a ray goes to, of those that hold the first of `way`: one that can follow it
-  /// through as many leaves as any. Where several can, `spread`, any number, chooses.
-  int Next(std::span<const LeafOnWay> way, std::uint32_t spread) const;
+  /// Ranks differ in what waits for them if they differ by so many rays.
+  static constexpr std::uint64_t kManyRays = 256;
+  /// The rank that a ray goes to, of those that hold the first of `way`: one for which not many
+  /// more rays wait than for any; of these one that can follow it through as many leaves as any;
+  /// of these `spread`, any number, chooses. `waiting`: rays, by rank.
+  int Next(std::span<const LeafOnWay> way, std::span<const std::uint64_t> waiting,
+           std::uint32_t spread) const;
 
  private:
   Holding(int ranks, std::uint32_t leaves);

@@ -84,36 +84,10 @@ std::int32_t ObjectTree::Split(std::span<const Bounds> boxes, std::vector<std::u
   return plane;
 }
 
-void ObjectTree::Along(const Ray<double>& ray, double rounding, std::vector<LeafOnWay>& way) const {
-  way.clear();
-  if (!(scene_.low.x <= scene_.high.x)) return;
-  constexpr double kForever = std::numeric_limits<double>::infinity();
-  const double margin = 64 * rounding;
-  if (std::isinf(EnterBounds(scene_, SlabRay(ray, 1 + margin), kForever))) return;
-  const double extent = MaxNorm(scene_.low) + MaxNorm(scene_.high) + MaxNorm(ray.origin);
-  const double slack = margin * extent;
-  Part waiting[kMostPlanesAbove];
-  int count = 0;
-  Part now{root_, 0, kForever};
-  for (;;) {
-    if (now.link >= 0) {
-      const Plane& plane = planes_[static_cast<std::size_t>(now.link)];
-      if (Cross(plane, ray, margin, slack, now, waiting[count])) ++count;
-      continue;
-    }
-    way.push_back({static_cast<std::uint32_t>(~now.link), std::max(0.0, now.from - slack)});
-    if (count == 0) break;
-    now = waiting[--count];
-  }
-  // The margins of two neighbours overlap; whoever stops at a leaf has seen all that is nearer.
-  for (std::size_t i = way.size() - 1; i > 0; --i)
-    way[i - 1].enter = std::min(way[i - 1].enter, way[i].enter);
-}
-
 /// The part of a ray that `now` describes, at a plane: `now` becomes the first side that it is on.
 /// True if it is on the other as well, which `later` then describes.
-bool ObjectTree::Cross(const Plane& plane, const Ray<double>& ray, double margin, double slack,
-                       Part& now, Part& later) {
+inline bool ObjectTree::Cross(const Plane& plane, const Ray<double>& ray, double margin,
+                              double slack, Part& now, Part& later) {
   const double distance = plane.at - Component(ray.origin, plane.axis);
   const double direction = Component(ray.direction, plane.axis);
   const bool from_below = direction > 0 || (direction == 0 && distance > 0);
@@ -138,6 +112,36 @@ bool ObjectTree::Cross(const Plane& plane, const Ray<double>& ray, double margin
   later = {far, std::max(now.from, crosses - around), now.to};
   now = {near, now.from, std::min(now.to, crosses + around)};
   return true;
+}
+
+std::uint64_t ObjectTree::Along(const Ray<double>& ray, double rounding,
+                                std::vector<LeafOnWay>& way) const {
+  way.clear();
+  if (!(scene_.low.x <= scene_.high.x)) return 0;
+  constexpr double kForever = std::numeric_limits<double>::infinity();
+  const double margin = 64 * rounding;
+  if (std::isinf(EnterBounds(scene_, SlabRay(ray, 1 + margin), kForever))) return 1;
+  const double extent = MaxNorm(scene_.low) + MaxNorm(scene_.high) + MaxNorm(ray.origin);
+  const double slack = margin * extent;
+  Part waiting[kMostPlanesAbove];
+  int count = 0;
+  std::uint64_t planes = 0;
+  Part now{root_, 0, kForever};
+  for (;;) {
+    if (now.link >= 0) {
+      ++planes;
+      const Plane& plane = planes_[static_cast<std::size_t>(now.link)];
+      if (Cross(plane, ray, margin, slack, now, waiting[count])) ++count;
+      continue;
+    }
+    way.push_back({static_cast<std::uint32_t>(~now.link), std::max(0.0, now.from - slack)});
+    if (count == 0) break;
+    now = waiting[--count];
+  }
+  // The margins of two neighbours overlap; whoever stops at a leaf has seen all that is nearer.
+  for (std::size_t i = way.size() - 1; i > 0; --i)
+    way[i - 1].enter = std::min(way[i - 1].enter, way[i].enter);
+  return 1 + (planes + 1) / 2;
 }
 
 }  // namespace stipple::raytracer

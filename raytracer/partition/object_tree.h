@@ -39,8 +39,9 @@ class ObjectTree {
 
   /// Replaces `way` by the leaves that the ray meets, the nearest first; by none if it misses the
   /// scene. An object that the ray meets in a leaf's cell lies in one of them, whatever the
-  /// rounding; `rounding`: relative error of the ray's arithmetic.
-  void Along(const Ray<double>& ray, double rounding, std::vector<LeafOnWay>& way) const;
+  /// rounding; `rounding`: relative error of the ray's arithmetic. Returns what it took, in tests
+  /// of a box: two planes, with their divisions, count as one.
+  std::uint64_t Along(const Ray<double>& ray, double rounding, std::vector<LeafOnWay>& way) const;
 
  private:
   /// A plane: leaves and planes below it and above. Links: >= 0 a plane, else ~leaf.

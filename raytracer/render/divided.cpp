@@ -17,12 +17,13 @@
 #include "raytracer/render/marks.h"
 #include "raytracer/render/point_supply.h"
 #include "raytracer/render/progress.h"
+#include "raytracer/render/ray_package.h"
 
 namespace stipple::raytracer {
 namespace {
 
 enum Tag : int {
-  kRays = 10,  // Traveller<Real>s
+  kRays = 10,  // RayPackage
   kCredit,     // packages of the receiver's that were worked off: std::uint32_t
   kFound,      // FoundParts, to the assembling rank
   kLast,       // the sender has found all it will
@@ -33,8 +34,9 @@ enum Tag : int {
 };
 
 // Packages that one rank may send to another before the first of them is worked off. Half of them
-// are acknowledged at a time.
-constexpr std::uint32_t kCredits = 8;
+// are acknowledged at a time, or with the next package that goes back, or by who has nothing else
+// to do.
+constexpr std::size_t kCredits = 8;
 
 // Rays between two looks for letters.
 constexpr int kRaysPerLook = 16;
@@ -105,12 +107,11 @@ class RayQueue {
 /// What lies between this rank and one other.
 template <class Real>
 struct Neighbour {
-  std::vector<Traveller<Real>> outgoing;
-  std::uint32_t credits = kCredits;
-  std::uint64_t sent = 0;            // packages to it
-  std::deque<std::size_t> packages;  // of it, not worked off: rays
-  std::size_t followed = 0;          // rays of the first of them
-  std::uint32_t worked_off = 0;      // packages that it has not been told of
+  std::deque<RayPackage<Real>> outgoing;  // all but the last are full
+  std::deque<std::size_t> under_way;      // packages to it, not worked off: rays
+  std::deque<std::size_t> packages;       // of it, not worked off: rays
+  std::size_t followed = 0;               // rays of the first of them
+  std::uint32_t worked_off = 0;           // packages that it has not been told of
 };
 
 template <class Real>
@@ -125,6 +126,7 @@ class Worker {
         assembling_(AssemblingRank(world, choice.partition)),
         supply_(world, mail, row_, choice.points, kAsk),
         neighbours_(static_cast<std::size_t>(choice.holders)),
+        waiting_(static_cast<std::size_t>(choice.holders)),
         four_counters_(world.rank, choice.holders, Intact(kSecondWave) ? 2 : 1),
         safra_(world.rank, choice.holders),
         progress_(PointCount(choice.points.raster) / static_cast<std::size_t>(choice.holders),
@@ -164,7 +166,7 @@ class Worker {
     more_.clear();
     RayResult found;
     const RasterPoint point = ray.point;
-    const int next = tracer_.Advance(ray, more_, found);
+    const int next = tracer_.Advance(ray, waiting_, more_, found);
     if (next != RankTracer<Real>::kEnded) Forward(ray, next);
     for (const Traveller<Real>& one : more_) queue_.Push(one, -1);
     travel_.most_held = std::max<std::uint64_t>(travel_.most_held, queue_.size());
@@ -182,39 +184,69 @@ class Worker {
     for (const Traveller<Real>& ray : more_) queue_.Push(ray, -1);
     Keep(*point, found);
     progress_.Advance(1);
-    if (supply_.left() == 0) RecordCounts(tracer_.counts());
+    if (supply_.left() == 0) Record();
     return true;
   }
 
   void Forward(const Traveller<Real>& ray, int to) {
     Neighbour<Real>& neighbour = neighbours_[static_cast<std::size_t>(to)];
-    neighbour.outgoing.push_back(ray);
-    if (neighbour.outgoing.size() >= choice_.package) SendPackage(to);
+    if (neighbour.outgoing.empty() || IsFull(neighbour.outgoing.back()))
+      neighbour.outgoing.emplace_back();
+    neighbour.outgoing.back().Add(ray);
+    ++waiting_[static_cast<std::size_t>(to)];
+    if (IsFull(neighbour.outgoing.back())) SendFull(to);
   }
 
-  /// As many rays as fit into a package; false if the receiver has enough.
-  bool SendPackage(int to) {
+  bool IsFull(const RayPackage<Real>& package) const { return package.rays() == choice_.package; }
+
+  /// As many as the receiver may get.
+  void SendFull(int to) {
     Neighbour<Real>& neighbour = neighbours_[static_cast<std::size_t>(to)];
-    if (neighbour.credits == 0) return false;
-    --neighbour.credits;
-    ++neighbour.sent;
-    std::vector<Traveller<Real>>& rays = neighbour.outgoing;
-    const std::size_t count = std::min(rays.size(), choice_.package);
-    const auto first = rays.end() - static_cast<std::ptrdiff_t>(count);
-    mail_.Post(to, kRays, std::span<const Traveller<Real>>(first, rays.end()));
-    rays.erase(first, rays.end());
-    ++travel_.packages_sent;
-    travel_.rays_sent += count;
-    return true;
+    while (!neighbour.outgoing.empty() && IsFull(neighbour.outgoing.front()) &&
+           neighbour.under_way.size() < kCredits)
+      SendPackage(to);
   }
 
-  /// Packages that are not full, too: nothing else will come to fill them.
+  void Record() const {
+    RecordCounts(tracer_.counts());
+    RecordTravel(queue_.size(), travel_.rays_received, travel_.rays_sent);
+  }
+
+  void SendPackage(int to) {
+    Neighbour<Real>& neighbour = neighbours_[static_cast<std::size_t>(to)];
+    RayPackage<Real>& package = neighbour.outgoing.front();
+    mail_.Post(to, kRays, package.Ready(std::exchange(neighbour.worked_off, 0)));
+    neighbour.under_way.push_back(package.rays());
+    ++travel_.packages_sent;
+    travel_.rays_sent += package.rays();
+    neighbour.outgoing.pop_front();
+    Record();
+  }
+
+  /// Packages that are not full, too, as nothing else will come to fill them: to those who have
+  /// worked off all that they have got of this rank. Others have work, and will tell when not.
   void SendRest() {
-    const std::size_t least = Intact(kPartFull) ? 1 : choice_.package;
-    for (int to = 0; to < choice_.holders; ++to)
-      while (neighbours_[static_cast<std::size_t>(to)].outgoing.size() >= least &&
-             SendPackage(to)) {
-      }
+    for (int to = 0; to < choice_.holders; ++to) {
+      Neighbour<Real>& neighbour = neighbours_[static_cast<std::size_t>(to)];
+      if (!neighbour.outgoing.empty() && neighbour.under_way.empty() && Intact(kPartFull))
+        SendPackage(to);
+      SendCredit(to);
+    }
+  }
+
+  void SendCredit(int to) {
+    Neighbour<Real>& neighbour = neighbours_[static_cast<std::size_t>(to)];
+    if (neighbour.worked_off > 0) mail_.Post(to, kCredit, std::exchange(neighbour.worked_off, 0));
+  }
+
+  /// So many packages have been worked off by `from`.
+  void TakeCredit(int from, std::uint32_t packages) {
+    Neighbour<Real>& neighbour = neighbours_[static_cast<std::size_t>(from)];
+    for (; packages > 0; --packages) {
+      waiting_[static_cast<std::size_t>(from)] -= neighbour.under_way.front();
+      neighbour.under_way.pop_front();
+    }
+    SendFull(from);
   }
 
   void Acknowledge(int from) {
@@ -222,9 +254,7 @@ class Worker {
     if (++neighbour.followed < neighbour.packages.front()) return;
     neighbour.followed = 0;
     neighbour.packages.pop_front();
-    if (++neighbour.worked_off < kCredits / 2) return;
-    mail_.Post(from, kCredit, neighbour.worked_off);
-    neighbour.worked_off = 0;
+    if (++neighbour.worked_off == kCredits / 2) SendCredit(from);
   }
 
   void Keep(RasterPoint point, const RayResult& found) {
@@ -286,13 +316,9 @@ class Worker {
       case kRays:
         TakeRays(letter);
         break;
-      case kCredit: {
-        Neighbour<Real>& neighbour = neighbours_[static_cast<std::size_t>(letter.from)];
-        neighbour.credits += letter.Of<std::uint32_t>().front();
-        while (neighbour.outgoing.size() >= choice_.package && SendPackage(letter.from)) {
-        }
+      case kCredit:
+        TakeCredit(letter.from, letter.Of<std::uint32_t>().front());
         break;
-      }
       case kFound:
         assembly_->Take(letter.Of<FoundPart>());
         break;
@@ -315,14 +341,15 @@ class Worker {
   }
 
   void TakeRays(const Letter& letter) {
-    const std::vector<Traveller<Real>> rays = letter.Of<Traveller<Real>>();
     if (ended_) StopAll("rays came after their end was found");
-    for (const Traveller<Real>& ray : rays) queue_.Push(ray, letter.from);
-    neighbours_[static_cast<std::size_t>(letter.from)].packages.push_back(rays.size());
+    const PackageHeader header = Unpack(letter.body, tracer_, more_);
+    for (const Traveller<Real>& ray : more_) queue_.Push(ray, letter.from);
+    neighbours_[static_cast<std::size_t>(letter.from)].packages.push_back(more_.size());
     ++packages_received_;
-    travel_.rays_received += rays.size();
+    travel_.rays_received += more_.size();
     travel_.most_held = std::max<std::uint64_t>(travel_.most_held, queue_.size());
-    RecordTravel(queue_.size(), travel_.rays_received, travel_.rays_sent);
+    if (header.worked_off > 0) TakeCredit(letter.from, header.worked_off);
+    Record();
   }
 
   void TakeSignal(const DetectorSignal& signal) {
@@ -339,7 +366,7 @@ class Worker {
   /// What was found goes to the assembling rank; that waits for all.
   void Finish() {
     SendFound();
-    RecordCounts(tracer_.counts());
+    Record();
     if (!assembly_) {
       mail_.Post(assembling_, kLast, std::span<const std::byte>());
     } else {
@@ -349,9 +376,8 @@ class Worker {
     while (!HasAllCredits()) TakeLetter(true);  // no letter may be left
   }
   bool HasAllCredits() const {
-    return std::ranges::all_of(neighbours_, [](const Neighbour<Real>& neighbour) {
-      return neighbour.credits == kCredits - neighbour.sent % (kCredits / 2);
-    });
+    return std::ranges::all_of(
+        neighbours_, [](const Neighbour<Real>& neighbour) { return neighbour.under_way.empty(); });
   }
 
   const World& world_;
@@ -363,6 +389,7 @@ class Worker {
   PointSupply supply_;
   RayQueue<Real> queue_;
   std::vector<Neighbour<Real>> neighbours_;
+  std::vector<std::uint64_t> waiting_;  // rays for each rank, as far as this one knows
   std::vector<Traveller<Real>> more_;
   FoundParts found_;
   std::optional<Assembly> assembly_;
@@ -433,7 +460,7 @@ DividedRender RenderDivided(const World& world, RankTracer<Real>* tracer,
   Mark(Moment::kRenderBegins);
   DividedRender divided;
   // Most of what is sent is rays, or what they found; all else is short.
-  Mail mail(world, std::max(choice.package * sizeof(Traveller<Real>),
+  Mail mail(world, std::max(RayPackage<Real>::MostBytes(choice.package),
                             FoundParts::kMost * sizeof(FoundPart)));
   if (tracer == nullptr) {
     divided.rendered.raster = Serve(mail, choice);

@@ -39,7 +39,7 @@ struct DividedChoice {
   std::string_view partition;
   PartitionChoice points;
   int holders = 1;           // ranks that hold objects and trace: all, or all but the host
-  std::size_t package = 64;  // rays in a message, at most
+  std::size_t package = 128;  // rays in a message, at most
 
   // Where the host is to prefer bundles that begin in what a rank holds: by bundle a leaf, or
   // kNowhere. Empty: in their order.

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <cstring>
 #include <list>
-#include <memory>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -32,11 +31,8 @@ struct Letter {
 
 class Mail {
  public:
-  /// No letter is longer than `most_bytes`.
-  Mail(const World& world, std::size_t most_bytes)
-      : world_(world),
-        most_bytes_(most_bytes),
-        room_(std::make_unique_for_overwrite<std::byte[]>(most_bytes)) {}
+  /// No letter has more than `most_bytes`.
+  Mail(const World& world, std::size_t most_bytes) : world_(world), most_bytes_(most_bytes) {}
   /// Waits until all that was posted has been taken over.
   ~Mail();
   Mail(const Mail&) = delete;
@@ -68,8 +64,7 @@ class Mail {
 
   const World& world_;
   std::size_t most_bytes_;
-  std::unique_ptr<std::byte[]> room_;  // for the letter that comes
-  std::list<Posted> under_way_;
+  std::list<Posted> under_way_;  // in their order
   std::uint64_t posted_ = 0;
 };
 

@@ -23,7 +23,8 @@ CounterRow counter_rows[] = {
     {{"eye rays", "rays", 0}, [](const RayCounts& c) { return c.eye_rays; }},
     {{"shadow rays", "rays", 0}, [](const RayCounts& c) { return c.shadow_rays; }},
     {{"reflected rays", "rays", 0}, [](const RayCounts& c) { return c.reflected_rays; }},
-    {{"refracted rays", "rays", 0}, [](const RayCounts& c) { return c.refracted_rays; }}};
+    {{"refracted rays", "rays", 0}, [](const RayCounts& c) { return c.refracted_rays; }},
+    {{"repeated tests", "tests", 0}, [](const RayCounts& c) { return c.repeated_tests; }}};
 
 stipple_name bundles_left = {"bundles left", "bundles", 0};
 stipple_name rays_waiting = {"rays waiting", "rays", 0};

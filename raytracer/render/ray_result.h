@@ -17,6 +17,7 @@ struct RayCounts {
   std::uint64_t shadow_rays = 0, shadow_hits = 0;
   std::uint64_t reflected_rays = 0, refracted_rays = 0;
   TestCounts tests;
+  std::uint64_t repeated_tests = 0;  // of these: that another rank has done for the same ray, too
 
   std::uint64_t Rays() const { return eye_rays + shadow_rays + reflected_rays + refracted_rays; }
   std::uint64_t Work() const { return tests.box_tests + tests.primitive_tests; }

@@ -25,17 +25,22 @@ class RankTracerIn final : public RankTracer<Real> {
     for (std::size_t i = 0; i < eye_rays_.count(); ++i) {
       Traveller<Real> ray;
       ray.ray = eye_rays_.Through(point, i);
+      ray.eye_ray = static_cast<std::uint16_t>(i + 1);
       ray.point = point;
       ray.first = i == 0;
       rays.push_back(ray);
     }
   }
 
-  [[gnu::noinline]] int Advance(Traveller<Real>& ray, std::vector<Traveller<Real>>& rays,
-                                RayResult& found) override {
+  Ray<Real> EyeRay(RasterPoint point, std::size_t number) const override {
+    return eye_rays_.Through(point, number);
+  }
+
+  [[gnu::noinline]] int Advance(Traveller<Real>& ray, std::span<const std::uint64_t> waiting,
+                                std::vector<Traveller<Real>>& rays, RayResult& found) override {
     const std::uint64_t work_before = shader_.counts().Work();
     bool stopped = false;
-    const int next = Follow(ray, stopped);
+    const int next = Follow(ray, waiting, stopped);
     if (next == RankTracer<Real>::kEnded) {
       if (ray.to_light)
         EndAtLight(ray, stopped, found);
@@ -51,14 +56,17 @@ class RankTracerIn final : public RankTracer<Real> {
 
  private:
   /// Where it goes next. `stopped`: something stands before its light.
-  int Follow(Traveller<Real>& ray, bool& stopped) {
+  int Follow(Traveller<Real>& ray, std::span<const std::uint64_t> waiting, bool& stopped) {
     const Ray<double> line = {Wide(ray.ray.origin), Wide(ray.ray.direction)};
-    parts_.tree.Along(line, static_cast<double>(shader_.rounding()), way_);
+    const std::uint64_t walk =
+        parts_.tree.Along(line, static_cast<double>(shader_.rounding()), way_);
+    shader_.counts().tests.box_tests += walk;
+    if (ray.arrived) shader_.counts().repeated_tests += walk;
     for (; ray.seen < way_.size(); ++ray.seen) {
       const LeafOnWay& next = way_[ray.seen];
       if (static_cast<double>(ray.t) < next.enter) break;
       if (!parts_.holding.Holds(rank_, next.leaf))
-        return parts_.holding.Next(std::span(way_).subspan(ray.seen), ray.point);
+        return parts_.holding.Next(std::span(way_).subspan(ray.seen), waiting, ray.point);
       const std::uint64_t before = shader_.counts().Work();
       if (ray.to_light)
         stopped = parts_.held[next.leaf]->kernel->Occluded(ray.ray, ray.t, shader_.counts().tests);

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "raytracer/partition/holding.h"
@@ -21,7 +22,7 @@
 
 namespace stipple::raytracer {
 
-/// It travels in messages as it is.
+/// How it travels in messages: ray_package.h.
 template <class Real>
 struct Traveller {
   Ray<Real> ray;
@@ -33,9 +34,11 @@ struct Traveller {
   std::uint32_t object = kNoObject;  // the nearest so far
   std::uint32_t material = 0;        // of it
   std::uint16_t seen = 0;            // leaves on its way that it has been through
+  std::uint16_t eye_ray = 0;         // 1 + its number among those of its point; 0: it is none
   std::uint8_t depth = 1;
   bool to_light = false;
-  bool first = false;  // of its point: what it meets is what the pixel shows
+  bool first = false;    // of its point: what it meets is what the pixel shows
+  bool arrived = false;  // in a message: another rank has looked for its way before
   PackedMedia media;
 };
 
@@ -47,12 +50,16 @@ class RankTracer {
 
   /// Adds the eye rays of a point to `rays`, and that there are so many to `found`.
   virtual void Begin(RasterPoint point, std::vector<Traveller<Real>>& rays, RayResult& found) = 0;
+  /// The line of one of them.
+  virtual Ray<Real> EyeRay(RasterPoint point, std::size_t number) const = 0;
 
   static constexpr int kEnded = -1;
   /// Follows a ray through leaves that this rank holds. The rank that it has to go to, or kEnded;
-  /// then rays that come of it are added to `rays`. What it found is added to `found`.
-  virtual int Advance(Traveller<Real>& ray, std::vector<Traveller<Real>>& rays,
-                      RayResult& found) = 0;
+  /// then rays that come of it are added to `rays`. What it found is added to `found`. `waiting`:
+  /// rays that are known to wait for each rank; where several can go on with one, it goes to who
+  /// has few.
+  virtual int Advance(Traveller<Real>& ray, std::span<const std::uint64_t> waiting,
+                      std::vector<Traveller<Real>>& rays, RayResult& found) = 0;
 
   virtual const RayCounts& counts() const = 0;
   /// Tests done in each leaf.

@@ -127,15 +127,29 @@ TEST(Holding, EvenReplicationIsTheStudys) {
       for (int rank = 0; rank < ranks; ++rank)
         EXPECT_EQ(holding.LeavesOf(rank).size(), static_cast<std::size_t>(each));
       const std::vector<LeafOnWay> way{{0, 0}, {static_cast<std::uint32_t>(ranks - 1), 1}};
+      const std::vector<std::uint64_t> nobody(static_cast<std::size_t>(ranks));
       for (std::uint32_t spread = 0; spread < 20; ++spread)
-        EXPECT_TRUE(holding.Holds(holding.Next(way, spread), 0));
+        EXPECT_TRUE(holding.Holds(holding.Next(way, nobody, spread), 0));
     }
 }
 
 TEST(Holding, ARayGoesToWhoCanFollowItFarthest) {
   const Holding holding = Holding::Even(8, 3);  // rank r holds r, r + 1, r + 2
-  EXPECT_EQ(holding.Next(std::vector<LeafOnWay>{{2, 0}, {3, 1}, {4, 2}}, 5), 2);
-  EXPECT_EQ(holding.Next(std::vector<LeafOnWay>{{2, 0}, {0, 1}}, 1), 0);
+  std::vector<std::uint64_t> waiting(8);
+  EXPECT_EQ(holding.Next(std::vector<LeafOnWay>{{2, 0}, {3, 1}, {4, 2}}, waiting, 5), 2);
+  EXPECT_EQ(holding.Next(std::vector<LeafOnWay>{{2, 0}, {0, 1}}, waiting, 1), 0);
+}
+
+TEST(Holding, ARayGoesToWhoHasFewIfTheOthersHaveManyMore) {
+  const Holding holding = Holding::Even(8, 3);
+  const std::vector<LeafOnWay> way{{2, 0}, {3, 1}, {4, 2}};
+  std::vector<std::uint64_t> waiting(8);
+  waiting[2] = Holding::kManyRays - 1;
+  EXPECT_EQ(holding.Next(way, waiting, 5), 2);
+  waiting[2] = Holding::kManyRays;
+  EXPECT_EQ(holding.Next(way, waiting, 5), 1);  // of 0, 1 and 2, which hold leaf 2
+  waiting[0] = waiting[1] = 2 * Holding::kManyRays;
+  EXPECT_EQ(holding.Next(way, waiting, 5), 2);
 }
 
 std::vector<LeafLoad> SomeLoads(std::size_t count) {
@@ -161,7 +175,9 @@ TEST(Holding, CoupledHoldsEachLeafWithinTheLimit) {
       EXPECT_LE(bytes, most);
     }
     for (std::uint32_t leaf = 0; leaf < 32; ++leaf)
-      EXPECT_TRUE(holding->Holds(holding->Next(std::vector<LeafOnWay>{{leaf, 0}}, 3), leaf));
+      EXPECT_TRUE(holding->Holds(
+          holding->Next(std::vector<LeafOnWay>{{leaf, 0}}, std::vector<std::uint64_t>(8), 3),
+          leaf));
   }
   EXPECT_FALSE(Holding::Coupled(8, loads, all / 16));
 }
