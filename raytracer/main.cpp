@@ -5,9 +5,12 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <exception>
 #include <fstream>
+#include <new>
 
 #include "raytracer/errors.h"
 #include "raytracer/geometry/kernel.h"
@@ -28,6 +31,7 @@
 #include "raytracer/scene/nff.h"
 #include "raytracer/scene/shared_scene.h"
 #include "raytracer/stopwatch.h"
+#include "raytracer/whole_file.h"
 
 namespace stipple::raytracer {
 namespace {
@@ -72,10 +76,13 @@ Rendered RenderScene(const World& world, const Scene& scene, const Model<Real>& 
 }
 
 void WriteText(const std::string& text, const std::string& path) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) throw InputError(path, 0, fmt::format("cannot be written: {}", std::strerror(errno)));
+  WriteWhole(path, [&](const std::string& name) {
+    std::ofstream file(name, std::ios::binary);
+    file << text;
+    file.close();
+    if (!file)
+      throw InputError(path, 0, fmt::format("cannot be written: {}", std::strerror(errno)));
+  });
 }
 
 /// What the picture lacks at most, be it written or not.
@@ -245,7 +252,9 @@ void LoadAndRender(const World& world, const Options& options) {
   OnAllRanks(world, [&] {
     if (world.has_host && options.partition == "guided")
       throw UsageError(
-          "--partition guided: this machine has a host, which hands out work: bundles");
+          "--partition guided: ranks take work for themselves, but this machine has a host that "
+          "hands "
+          "it out: take --partition bundles, or a machine without a host (modern)");
     return true;
   });
   if (options.output.ends_with(".exr")) OnRank(world, 0, [&] { NeedExr(options.output); });
@@ -283,11 +292,28 @@ int RunOrReport(int argc, char** argv) {
   }
 }
 
+/// What one rank has not foreseen ends all: the others would wait for it.
+[[noreturn]] void EndAll() {
+  int rank = 0;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  try {
+    if (const std::exception_ptr error = std::current_exception()) std::rethrow_exception(error);
+    std::fprintf(stderr, "raytracer: rank %d: ended by itself; this is a bug\n", rank);
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "raytracer: rank %d: not enough memory\n", rank);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "raytracer: rank %d: %s; this is a bug\n", rank, error.what());
+  }
+  MPI_Abort(MPI_COMM_WORLD, kUnusable);
+  std::abort();
+}
+
 }  // namespace
 }  // namespace stipple::raytracer
 
 int main(int argc, char** argv) {
   MPI_Init(&argc, &argv);
+  std::set_terminate(stipple::raytracer::EndAll);
   const int status = stipple::raytracer::RunOrReport(argc, argv);
   MPI_Finalize();
   return status;

@@ -20,6 +20,7 @@
 #include "analysis/tools/new_archive.h"
 #include "analysis/tools/options.h"
 #include "analysis/tools/process.h"
+#include "analysis/tools/stopped_run.h"
 #include "analysis/trace/input_error.h"
 
 namespace stipple {
@@ -125,8 +126,6 @@ constexpr const char* kConfiguration[] = {"network/model:SMPI",
                                           "smpi/async-small-thresh:1000000000",
                                           "smpi/send-is-detached-thresh:1000000000",
                                           "smpi/wtime:0",
-                                          "smpi/iprobe:50e-6",
-                                          "smpi/test:50e-6",
                                           "smpi/grow-injected-times:no"};
 
 std::vector<std::string> CommandFor(const SimulateOptions& options, const fs::path& directory) {
@@ -180,6 +179,25 @@ void Summarise(const SimulateOptions& options) {
   WarnOfProblems(trace, analysis.health);
 }
 
+constexpr int kRefused = 2;  // exit status of a ray tracer that does not begin
+constexpr std::size_t kMostRanks = 32;
+
+/// A run that did not come to its end: what was refused leaves nothing behind, any other is told
+/// as far as it was recorded.
+void LookAtStopped(const std::string& archive, int status) {
+  std::error_code error;
+  if (fs::remove(archive, error)) return;  // nothing was recorded
+  const Trace trace = Trace::Open(archive);
+  if (status == kRefused && Analysis(trace).mpi.matched == 0) {
+    fs::remove_all(archive, error);
+    return;
+  }
+  if (status != kRefused)
+    fmt::print(stderr, "stipple simulate: the run stopped where\n{}",
+               WhereRanksStopped(trace, kMostRanks));
+  fmt::print(stderr, "what was recorded until then: {}\n", archive);
+}
+
 }  // namespace
 
 int RunSimulate(const Arguments& arguments) {
@@ -191,8 +209,7 @@ int RunSimulate(const Arguments& arguments) {
   AllowManyFiles();
   const int status = RunApart(CommandFor(*options, directory), options->json);
   if (status != 0) {
-    std::error_code error;
-    fs::remove(options->archive, error);  // if nothing was recorded
+    LookAtStopped(options->archive, status);
     return status;
   }
   CompactNew(options->archive);

@@ -11,6 +11,7 @@
 #include <exception>
 
 #include "raytracer/errors.h"
+#include "raytracer/whole_file.h"
 
 namespace stipple::raytracer {
 namespace {
@@ -36,10 +37,14 @@ void WriteExr(const LinearImage& image, const std::string& path) {
     Imf::Header header(image.size.width, image.size.height);
     for (const char* const channel : kChannels)
       header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
-    Imf::OutputFile file(path.c_str(), header);
     LinearImage copy = image;  // OpenEXR's buffers are not const
-    file.setFrameBuffer(BufferOf(copy.rgb.data(), static_cast<std::size_t>(image.size.width)));
-    file.writePixels(image.size.height);
+    WriteWhole(path, [&](const std::string& name) {
+      Imf::OutputFile file(name.c_str(), header);
+      file.setFrameBuffer(BufferOf(copy.rgb.data(), static_cast<std::size_t>(image.size.width)));
+      file.writePixels(image.size.height);
+    });
+  } catch (const InputError&) {
+    throw;
   } catch (const std::exception& error) {
     throw InputError(path, 0, fmt::format("cannot be written: {}", error.what()));
   }

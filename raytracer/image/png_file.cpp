@@ -5,6 +5,7 @@
 #include <png.h>
 
 #include "raytracer/errors.h"
+#include "raytracer/whole_file.h"
 
 namespace stipple::raytracer {
 namespace {
@@ -25,8 +26,10 @@ void WritePng(const Image& image, const std::string& path) {
   png.height = static_cast<png_uint_32>(image.size.height);
   png.format = PNG_FORMAT_RGB;
   png.flags = PNG_IMAGE_FLAG_FAST;  // while one rank writes, the others wait
-  if (png_image_write_to_file(&png, path.c_str(), 0, image.rgb.data(), 0, nullptr) == 0)
-    throw InputError(path, 0, fmt::format("cannot be written: {}", png.message));
+  WriteWhole(path, [&](const std::string& file) {
+    if (png_image_write_to_file(&png, file.c_str(), 0, image.rgb.data(), 0, nullptr) == 0)
+      throw InputError(path, 0, fmt::format("cannot be written: {}", png.message));
+  });
 }
 
 Image ReadPng(const std::string& path) {

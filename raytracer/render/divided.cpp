@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <deque>
 #include <numeric>
 
@@ -41,6 +43,18 @@ constexpr int kRaysPerLook = 16;
 
 // No eye ray is begun while so many full packages cannot be sent: what is under way takes memory.
 constexpr std::size_t kMostPackagesHere = 64;
+
+/// Whether a part of the protocol is there. In the build for tests one can be taken away, to see
+/// that it is missed.
+#ifdef STIPPLE_BREAKABLE
+bool Intact(std::string_view part) {
+  const char* broken = std::getenv("STIPPLE_BREAK");
+  return broken == nullptr || part != broken;
+}
+#else
+constexpr bool Intact(std::string_view) { return true; }
+#endif
+constexpr std::string_view kPartFull = "part-full packages", kSecondWave = "second wave";
 
 /// Detectors by number: each sees its own signals only.
 struct DetectorSignal {
@@ -118,7 +132,7 @@ class Worker {
         supply_(world, mail, row_, choice.points, kAsk),
         neighbours_(static_cast<std::size_t>(choice.holders)),
         waiting_(static_cast<std::size_t>(choice.holders)),
-        four_counters_(world.rank, choice.holders),
+        four_counters_(world.rank, choice.holders, Intact(kSecondWave) ? 2 : 1),
         safra_(world.rank, choice.holders),
         progress_(PointCount(choice.points.raster) / static_cast<std::size_t>(choice.holders),
                   world.rank == 0) {
@@ -226,7 +240,8 @@ class Worker {
   void SendRest() {
     for (int to = 0; to < choice_.holders; ++to) {
       Neighbour<Real>& neighbour = neighbours_[static_cast<std::size_t>(to)];
-      if (!neighbour.outgoing.empty() && neighbour.under_way.empty()) SendPackage(to);
+      if (!neighbour.outgoing.empty() && neighbour.under_way.empty() && Intact(kPartFull))
+        SendPackage(to);
       SendCredit(to);
     }
   }
@@ -293,7 +308,11 @@ class Worker {
     };
     detect(0, four_counters_);
     detect(1, safra_);
-    if (world_.rank == 0 && four_counters_.ended() && safra_.ended()) End();
+    if (EndIsFound()) End();
+  }
+
+  bool EndIsFound() const {
+    return world_.rank == 0 && four_counters_.ended() && (safra_.ended() || !Intact(kSecondWave));
   }
 
   void End() {
@@ -363,7 +382,7 @@ class Worker {
     else
       safra_.Receive(signal.signal, state, out);
     for (const Signal& one : out) mail_.Post(one.to, kSignal, DetectorSignal{signal.detector, one});
-    if (world_.rank == 0 && four_counters_.ended() && safra_.ended()) End();
+    if (EndIsFound()) End();
   }
 
   /// What was found goes to the assembling rank; that waits for all.
@@ -463,6 +482,7 @@ DividedRender RenderDivided(const World& world, RankTracer<Real>* tracer,
                             const DividedChoice& choice) {
   Mark(Moment::kRenderBegins);
   DividedRender divided;
+  // Most of what is sent is rays, or what they found; all else is short.
   Mail mail(world, std::max(RayPackage<Real>::MostBytes(choice.package),
                             FoundParts::kMost * sizeof(FoundPart)));
   if (tracer == nullptr) {

@@ -22,7 +22,7 @@ namespace {
 
 namespace s4u = simgrid::s4u;
 
-constexpr int kUnusable = 2;  // exit status
+constexpr int kUnusable = 2, kDeadlocked = 3;  // exit status
 
 struct Run {
   const MachineRow* machine = nullptr;
@@ -117,6 +117,17 @@ void BuildPlatform(const Run& run) {
   }
 }
 
+/// Nothing is under way that any rank that is left could go on with. Where each of them waits is
+/// known to the archive, which stipple simulate reads.
+void SayDeadlock() {
+  fmt::print(stderr,
+             "stipple simulate: deadlock at {:.6f} s of the machine: the ranks wait for messages "
+             "that nobody will send\n",
+             simgrid_get_clock());
+  std::fflush(nullptr);
+  std::_Exit(kDeadlocked);
+}
+
 }  // namespace
 
 std::uint64_t StartUp::Of(std::uint64_t bytes) const {
@@ -155,5 +166,9 @@ extern "C" __attribute__((visibility("default"))) void load_platform(const simgr
   ReadRun(run);
   BuildPlatform(run);
   NetworkLog::Instance().Begin();
-  simgrid::s4u::Engine::set_config("smpi/np:" + std::to_string(run.nodes + (run.host ? 1 : 0)));
+  using simgrid::s4u::Engine;
+  Engine::set_config("smpi/np:" + std::to_string(run.nodes + (run.host ? 1 : 0)));
+  Engine::set_config(fmt::format("smpi/iprobe:{:.9f}", run.machine->look_s));
+  Engine::set_config(fmt::format("smpi/test:{:.9f}", run.machine->look_s));
+  Engine::on_deadlock_cb(SayDeadlock);
 }

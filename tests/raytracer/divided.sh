@@ -61,14 +61,16 @@ check 3 $divided --replicate 0.6
 
 # One object in all parts, all in one place, none at all.
 printf 'v from 0 -6 2 at 0 0 0 up 0 0 1 angle 45 hither 0.1 resolution 16 16\nb 0 0.2 0.4\nl 3 -4 5\ns 0 0 0 900\n' > enormous.nff
-serial --scene enormous.nff
-check 5 $divided
 { sed 's/900/1/' enormous.nff; for i in 1 2 3 4 5 6 7; do echo 's 0 0 0 1'; done; } > heap.nff
-serial --scene heap.nff
-check 5 $divided --partition bundles --bundle 16
 grep -v '^s' enormous.nff > none.nff
-serial --scene none.nff
-check 3 $divided
+for scene in enormous heap none; do
+  serial --scene $scene.nff
+  check 5 $divided --partition tiled
+  check 3 $divided --partition bundles --bundle 16 --package 1
+  check 3 $divided --partition guided
+  check 4 --objects coupled --partition bundles --bundle 16
+  check 3 --objects coupled --partition guided
+done
 
 # A limit that the scene does not fit into divides it; one that not even a part fits into is refused.
 serial --scene balls --scene-size 3 --resolution 40x40

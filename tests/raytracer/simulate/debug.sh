@@ -16,12 +16,14 @@ cp "$stipple" "$debug/bin/stipple"
 ln -sf "$build/lib/stipple/simulate/libstipple-machine.so" "$debug/lib/stipple/simulate/"
 cd "$work"
 for scene in teapot balls rings; do
-  for partition in bundles tiled; do
+  for divided in "--partition bundles" "--partition tiled" "--objects partitioned" "--objects coupled --partition bundles"; do
     for program in "$stipple" "$debug/bin/stipple"; do
       "$program" simulate --machine ipsc2 --nodes 8 -o run.stipple --overwrite --json -- raytracer --scene $scene \
-        --scene-size 3 --resolution 48x48 --partition $partition --bundle 64 > run.json 2> run.err || { cat run.err; exit 1; }
+        --scene-size 3 --resolution 48x48 $divided --bundle 64 > run.json 2> run.err || { cat run.err >&2; exit 1; }
       cat run.json
-    done | uniq | wc -l | grep -qx 1 || { echo "FAIL: $scene $partition differs in debug"; exit 1; }
+    done | uniq > runs.json
+    test "$(wc -l < runs.json)" = 1 || { cat runs.json; echo "FAIL: $scene $divided differs in debug"; exit 1; }
+    cat runs.json
   done
 done
 echo "the same hash in debug and release"
