@@ -23,7 +23,7 @@ namespace {
 constexpr Samples kSamples{16};
 constexpr std::uint32_t kBundle = 512;
 constexpr int kOrders = 5;
-constexpr std::string_view kRecommended = "fixed";
+constexpr std::string_view kRecommended = "fixed point", kSorted = "sorted first";
 constexpr long double kLevels = 255;  // of a component in a file
 
 using Orders = std::vector<std::vector<Contribution>>;
@@ -113,17 +113,17 @@ void AddScene(Session& session, const ChartScene& scene, ChartTable& table, Gain
   const auto per_point = static_cast<double>(serial.size()) / static_cast<double>(exact.size() / 3);
   for (std::size_t m = 0; m < methods.size(); ++m) {
     const Outcome& o = outcomes[m];
-    const bool keeps = methods[m].name == "sorted";
+    const bool keeps = methods[m].name == kSorted;
+    const double held = methods[m].bytes_held * (keeps ? per_point : 1);
     table.points.push_back(
         {scene.name,
-         keeps || methods[m].name == kRecommended ? "same in any order" : "as they arrive",
          std::string(methods[m].name),
+         fmt::format("{}: {:.0f} bytes a pixel", methods[m].name, held),
          o.cpu_s,
          static_cast<double>(o.apart),
          methods[m].name == kRecommended,
          {static_cast<double>(o.rounding), static_cast<double>(o.points),
-          static_cast<double>(o.as_written), static_cast<double>(methods[m].bytes_sent),
-          methods[m].bytes_held * (keeps ? per_point : 1)}});
+          static_cast<double>(o.as_written), static_cast<double>(methods[m].bytes_sent), held}});
   }
   gains.Add(outcomes);
 }
@@ -139,9 +139,10 @@ ChartTable SumsChart(Session& session) {
   Gains gains;
   for (const ChartScene& scene : kChartScenes) AddScene(session, scene, table, gains);
   table.sentence = fmt::format(
-      "Add in fixed point: one picture in any order, at most {} of a 255th from the exact sum, in "
-      "{} times the time of double and the same bytes; float's orders differ by up to {} of a "
-      "255th and in {} written pixels, double's by {} and in {}.",
+      "Add in fixed point: the same sums in any order, at most {} of a 255th from the exact ones, "
+      "in "
+      "{} times the time of double and the same bytes; orders differ in float by up to {} of a "
+      "255th and in {} pixels of a file, in double by {} and in {}.",
       ShortNumber(gains.rounding), RangeText(gains.time), ShortNumber(gains.float_apart),
       gains.float_written, ShortNumber(gains.double_apart), gains.double_written);
   return table;

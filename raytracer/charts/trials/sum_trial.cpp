@@ -102,8 +102,9 @@ ExactSums Sorted(std::span<const Contribution> arriving, std::size_t points) {
 constexpr std::array kMethods{
     SumMethod{"float", 3 * sizeof(float), 3 * sizeof(float), AsTheyArrive<float>},
     SumMethod{"double", 3 * sizeof(double), 3 * sizeof(double), AsTheyArrive<double>},
-    SumMethod{"fixed", sizeof(FixedColor), sizeof(FixedColor), InFixedPoint},
-    SumMethod{"sorted", 3 * sizeof(double) + sizeof(std::uint32_t), sizeof(Contribution), Sorted}};
+    SumMethod{"fixed point", sizeof(FixedColor), sizeof(FixedColor), InFixedPoint},
+    SumMethod{"sorted first", 3 * sizeof(double) + sizeof(std::uint32_t), sizeof(Contribution),
+              Sorted}};
 
 }  // namespace
 

@@ -43,8 +43,8 @@ struct SumMethod {
   ExactSums (*sum)(std::span<const Contribution> arriving, std::size_t points);
 };
 
-/// "float" and "double" as they arrive, "fixed" (the ray tracer's) as they arrive, and "sorted":
-/// kept until all are there, then added in double in the order of the serial program.
+/// "float" and "double" as they arrive, "fixed point" (the ray tracer's), and "sorted first": kept
+/// until all are there, then added in double in the order of the serial program.
 std::span<const SumMethod> SumMethods();
 
 /// In long double.
