@@ -13,8 +13,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kOrder[] = {"sampling", "depth",  "precision", "patches", "quadrics",
-                                       "offsets",  "cracks", "packets",   "rays"};
+constexpr std::string_view kOrder[] = {"sampling", "depth",   "precision", "patches",
+                                       "quadrics", "offsets", "cracks",    "packets",
+                                       "rays",     "sums",    "prediction"};
 
 auto PlaceOf(const fs::path& file) {
   return std::distance(std::begin(kOrder), std::ranges::find(kOrder, file.stem().string()));

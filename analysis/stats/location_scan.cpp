@@ -50,6 +50,7 @@ void ForEachVector(SomeScan& scan, Part&& part) {
   part(scan.activity.ends);
   part(scan.activity.probes);
   part(scan.activity.collectives);
+  part(scan.activity.transmissions);
   part(scan.activity.marks);
   part(scan.activity.thread_messages);
   part(scan.activity.system_calls);

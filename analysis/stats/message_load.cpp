@@ -13,6 +13,7 @@
 #include "analysis/stats/finding_of.h"
 #include "analysis/stats/number.h"
 #include "analysis/stats/time_steps.h"
+#include "analysis/stats/transmissions.h"
 
 namespace stipple {
 namespace {
@@ -59,6 +60,17 @@ using Sums = std::vector<Traffic>;
 void AddRates(std::vector<Cell>& cells, const Traffic& traffic, std::int64_t ns) {
   cells.emplace_back(static_cast<double>(traffic.messages) / Seconds(ns));
   cells.emplace_back(static_cast<double>(traffic.bytes) / Seconds(ns));
+}
+
+/// By the sender's rank.
+std::map<RankKey, NetworkOccupancy> OccupancyOf(const Analysis& analysis,
+                                                const Selection& selection, bool per_rank) {
+  std::map<RankKey, NetworkOccupancy> occupancy;
+  ForEachTransmission(analysis, selection, [&](const TransmissionEvent& t) {
+    occupancy[KeyOf(analysis.trace, t.sender, per_rank)].Add(t.begin_ns, t.end_ns);
+  });
+  for (auto& [rank, of_rank] : occupancy) of_rank.Finish();
+  return occupancy;
 }
 
 /// Begins of windows that are no moments of rows have sums of their own: `bounds` are all of them.
@@ -128,11 +140,18 @@ Table LoadTable(const Analysis& analysis, const Selection& selection, const Tabl
   Table table{"load", TableShape::kRows, {{"time_s"}}, {}};
   if (options.per_rank) table.columns.push_back({"rank"});
   for (const char* name : {"messages", "bytes", "messages_per_s", "bytes_per_s",
-                           "since_start_messages_per_s", "since_start_bytes_per_s"})
+                           "since_start_messages_per_s", "since_start_bytes_per_s", "in_network"})
     table.columns.push_back({name});
+  const bool told = HasTransmissions(analysis);
+  const auto occupancy = OccupancyOf(analysis, selection, options.per_rank);
   for (std::size_t row = 0; row < steps.count(); ++row) {
     for (const auto& [rank, of_rank] : sums) {
       std::vector<Cell> cells = LoadRow(steps, bounds, of_rank, row);
+      const auto found = occupancy.find(rank);
+      const double in_network = found == occupancy.end()
+                                    ? 0
+                                    : found->second.MeanOver(steps.WindowBegin(row), steps.At(row));
+      cells.push_back(told ? Cell{in_network} : Cell{});
       if (options.per_rank) cells.insert(cells.begin() + 1, std::int64_t{rank.second});
       table.rows.push_back(std::move(cells));
     }

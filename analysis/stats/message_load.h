@@ -11,9 +11,10 @@
 namespace stipple {
 
 /// Rows time_s, messages, bytes, messages_per_s, bytes_per_s, since_start_messages_per_s,
-/// since_start_bytes_per_s: what was sent in the step that ends at this moment (summed over the
-/// rows: everything), the rates in the window and since the begin of the span. By rank: rank
-/// second, the sender's.
+/// since_start_bytes_per_s, in_network: what was sent in the step that ends at this moment (summed
+/// over the rows: everything), the rates in the window and since the begin of the span, and how
+/// many messages were in the network on the mean of the window (null on machines that do not
+/// tell). By rank: rank second, the sender's.
 Table LoadTable(const Analysis& analysis, const Selection& selection, const TableOptions& options);
 
 /// Rows low, high, messages, bytes: messages of low <= size < high, in powers of two (below them

@@ -25,6 +25,7 @@ void ForEachPart(SomeAnalysis& a, Part&& part) {
   part("receives", a.mpi.receives);
   part("probes", a.mpi.probes);
   part("collectives", a.mpi.collectives);
+  part("transmissions", a.mpi.transmissions);
   part("marks", a.mpi.marks);
   part("thread_messages", a.mpi.thread_messages.matched);
   part("thread_unmatched", a.mpi.thread_messages.unmatched);

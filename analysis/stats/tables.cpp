@@ -23,6 +23,7 @@
 #include "analysis/stats/states.h"
 #include "analysis/stats/switches.h"
 #include "analysis/stats/syscalls.h"
+#include "analysis/stats/transmissions.h"
 #include "analysis/stats/utilisation.h"
 
 namespace stipple {
@@ -122,6 +123,9 @@ constexpr std::array kTables = {
                kPlaceAndWindow},
     TableEntry{"syscalls", SystemCallsAnswer,
                "system calls by name: how many, how long, what moved", true, kPlaceAndRegions},
+    TableEntry{"transmissions", TransmissionsAnswer,
+               "when each message was in the network of a simulated machine", false,
+               kPlaceAndMessages},
     TableEntry{"types", TypesAnswer, "messages by tag", true, kPlaceAndMessages},
     TableEntry{"utilisation", UtilisationAnswer, "how much the nodes compute, over time", true,
                kPlaceAndWindow},

@@ -9,6 +9,8 @@
 #include <tuple>
 #include <utility>
 
+#include "analysis/trace/transmissions.h"
+
 namespace stipple {
 namespace {
 
@@ -113,6 +115,7 @@ void TakeLocation(LocationActivity& from, MpiActivity& all, LocationActivity& pr
   Append(all.calls.Edit(), from.calls);
   Append(all.marks.Edit(), from.marks);
   Append(all.probes.Edit(), from.probes);
+  Append(all.transmissions.Edit(), from.transmissions);
   Append(process.thread_messages, from.thread_messages);
   Append(process.sends, from.sends);
   Append(process.receives, from.receives);
@@ -199,6 +202,7 @@ MpiActivity JoinActivity(const Trace& trace, std::vector<LocationActivity> locat
   });
   if (trace.kept()) DropOverwrittenEnds(sends, receives);
   MatchMessages(sends, receives);
+  JoinTransmissions(a.transmissions.Edit(), sends, a.calls);
   CountMessages(a);
   if (!trace.kept()) CountCollectives(trace, a);
   return a;

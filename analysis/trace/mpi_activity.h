@@ -81,6 +81,17 @@ struct CollectiveEvent {
   std::uint32_t end_call = kNoIndex;  // where it was complete; blocking: where it was entered
 };
 
+/// A message was in the network, as the simulator of the machine says.
+struct TransmissionEvent {
+  std::int64_t begin_ns = 0;
+  std::int64_t end_ns = 0;
+  std::uint64_t bytes = 0;  // with what the network adds
+  std::int32_t sender = 0;  // world ranks
+  std::int32_t receiver = 0;
+  std::uint32_t send = kNoIndex;  // the message; none: a part of a collective
+  std::uint32_t reserved = 0;
+};
+
 /// A moment that the program marked. No MPI, but it comes with the same scan.
 struct MarkEvent {
   std::int64_t time_ns = 0;
@@ -99,9 +110,10 @@ struct MpiActivity {
   Array<SendEvent> sends;        // by channel, then order of posts; cancelled ones are gone
   Array<ReceiveEvent> receives;  // likewise
   Array<ProbeEvent> probes;
-  Array<CollectiveEvent> collectives;  // by communicator, number, rank
-  Array<MarkEvent> marks;              // by location, then time
-  ThreadMessages thread_messages;      // with the same scan, too
+  Array<CollectiveEvent> collectives;      // by communicator, number, rank
+  Array<TransmissionEvent> transmissions;  // by sender, receiver, begin
+  Array<MarkEvent> marks;                  // by location, then time
+  ThreadMessages thread_messages;          // with the same scan, too
   std::uint64_t matched = 0;
   std::uint64_t reversed = 0;  // messages that were complete before their send was entered
   std::uint64_t bytes = 0;     // sent
@@ -134,6 +146,7 @@ struct LocationActivity {
   std::vector<RequestEnd> ends;
   std::vector<ProbeEvent> probes;
   std::vector<CollectiveEvent> collectives;
+  std::vector<TransmissionEvent> transmissions;
   std::vector<MarkEvent> marks;
   std::vector<ThreadMessageEnd> thread_messages;
   std::vector<CallSpan> system_calls;  // of a main thread, by end

@@ -60,6 +60,8 @@ void MpiCollector::Record(const EventWord* record, std::uint64_t ticks) {
       return Collective(RecordAt<MpiCollective>(record), ticks);
     case RecordKind::kMpiProbe:
       return Probe(RecordAt<MpiProbe>(record), ticks);
+    case RecordKind::kTransmission:
+      return Transmitted(RecordAt<Transmission>(record));
     default:
       return;
   }
@@ -146,6 +148,12 @@ void MpiCollector::Probe(const MpiProbe& r, std::uint64_t ticks) {
   out_.probes.push_back({{c, At(c).WorldRank(r.sender), location_.rank, r.tag},
                          trace_.TimeNs(location_, ticks),
                          call_});
+}
+
+void MpiCollector::Transmitted(const Transmission& r) {
+  out_.transmissions.push_back({trace_.TimeNs(location_, r.begin_ticks),
+                                trace_.TimeNs(location_, r.end_ticks), r.bytes, location_.rank,
+                                r.receiver});
 }
 
 }  // namespace stipple

@@ -35,6 +35,7 @@ class MpiCollector {
   void Receive(const MpiReceive& r, std::uint64_t ticks);
   void Collective(const MpiCollective& r, std::uint64_t ticks);
   void Probe(const MpiProbe& r, std::uint64_t ticks);
+  void Transmitted(const Transmission& r);
 
   const Trace& trace_;
   const Location& location_;

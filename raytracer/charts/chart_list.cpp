@@ -14,6 +14,7 @@ constexpr ChartEntry kCharts[] = {
     {"offsets", OffsetsChart, "rules for where rays start, over size and distance from the origin"},
     {"cracks", CracksChart, "rays lost between triangles, by the test that finds triangles"},
     {"packets", PacketsChart, "rays one by one or in packets, by where they come from"},
+    {"sums", SumsChart, "contributions to a pixel, added in the order in which they arrive"},
 };
 
 }  // namespace

@@ -27,6 +27,7 @@ ChartTable QuadricsChart(Session& session);
 ChartTable OffsetsChart(Session& session);
 ChartTable CracksChart(Session& session);
 ChartTable PacketsChart(Session& session);
+ChartTable SumsChart(Session& session);
 
 }  // namespace stipple::raytracer
 

@@ -7,6 +7,7 @@
 #include <smpi/smpi.h>
 
 #include <charconv>
+#include <cinttypes>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -79,6 +80,20 @@ Prices Scaled(const Prices& prices, double scale) {
           Scaled(prices.ray_ps, scale), Scaled(prices.shadow_ray_ps, scale)};
 }
 
+/// The machine's, or others to see what they change: STIPPLE_PRICES, four numbers of picoseconds in
+/// the order of Prices (tests/bench/simulate).
+Prices PricesOf(const MachineRow& machine) {
+  const std::string text = Variable("STIPPLE_PRICES");
+  if (text.empty()) return machine.prices;
+  Prices prices;
+  char end = 0;
+  if (std::sscanf(text.c_str(), "%" SCNu64 ",%" SCNu64 ",%" SCNu64 ",%" SCNu64 "%c",
+                  &prices.box_test_ps, &prices.primitive_test_ps, &prices.ray_ps,
+                  &prices.shadow_ray_ps, &end) != 4)
+    Refuse(fmt::format("STIPPLE_PRICES are not four numbers of picoseconds: '{}'", text));
+  return prices;
+}
+
 /// For SMPI: what a processor does before or after a message, by its size.
 std::string Factors(const StartUp& start_up) {
   return fmt::format("0:{:.9f}:0;{}:{:.9f}:0", static_cast<double>(start_up.short_ns) * 1e-9,
@@ -101,7 +116,7 @@ void ReadRun(Run& run) {
   run.host = run.machine->always_host || !Variable("STIPPLE_HOST").empty();
   run.host_overhead_ns = Ns(Number("STIPPLE_HOST_OVERHEAD", run.machine->host_overhead_s));
   const double scale = Number("STIPPLE_WORK_SCALE", 1);
-  run.node = {.prices = Scaled(run.machine->prices, scale),
+  run.node = {.prices = Scaled(PricesOf(*run.machine), scale),
               .event_ns = Ns(Number("STIPPLE_EVENT_COST", 0)),
               .has_host = run.machine->always_host};
 }

@@ -376,7 +376,8 @@ const std::map<std::string_view, std::string_view> kPromised = {
     {"types", "tag messages bytes"},
     {"load",
      "time_s messages bytes messages_per_s bytes_per_s since_start_messages_per_s "
-     "since_start_bytes_per_s"},
+     "since_start_bytes_per_s in_network"},
+    {"transmissions", "sender receiver tag bytes network_bytes sent_s begin_s end_s received_s"},
     {"utilisation", "time_s window since_start least most"},
     {"status", "time_s rank state user system message idle"}};
 

@@ -74,6 +74,27 @@ grep -q 'blocked' events.txt || fail "no switch for a wait"
 "$stipple" report first.stipple -o first.html > report.txt
 grep -q raytracer first.html
 
+# Messages between neighbours take what can be computed by hand: 135 us to start (375 above 100 bytes), 1 us for the hop, their
+# bytes and 16 of the simulator's at 2.8 MB/s if nothing shares the channel, 135 us to be taken. Those of a collective are
+# started one after the other like any other: node 0 sends to the host, then to node 1.
+simulate neighbours ipsc2 2 -- --objects partitioned
+"$stipple" stats neighbours.stipple --table transmissions --format csv > transmissions.csv
+awk -F, '
+  function us(from, to) { return (to - from) * 1e6 }
+  function near(a, b) { return a - b < 0.003 && b - a < 0.003 }
+  NR == 1 || $1 > 1 { next }
+  $3 == "" && $1 == 0 { if ($2 == 1 && to_host != "" && near(us(to_host, $7), 135)) ++collective
+                        to_host = $2 == 2 ? $7 : "" }
+  $3 == "" || $2 > 1 { next }
+  { long = $4 > 100; ++messages[long]
+    if (!near(us($6, $7), long ? 375 : 135) || us($8, $9) < 134.997 || us($7, $8) < 0.997 + $5 / 2.8 || $5 != $4 + 16) wrong = 1
+    if (near(us($7, $8), 1 + ($4 + 16) / 2.8)) ++alone[long]
+    if (near(us($8, $9), 135)) ++awaited }
+  END { exit wrong || !collective || !messages[0] || !messages[1] || !alone[0] || !alone[1] || !awaited }' transmissions.csv \
+  || { head -40 transmissions.csv; fail "a message does not take what it should"; }
+"$stipple" stats neighbours.stipple --table load --format csv |
+  awk -F, 'NR > 1 { if ($NF < 0) exit 1; sum += $NF } END { exit !(sum > 0) }' || fail "no load of the network"
+
 # Errors name what is wrong and what is known.
 refuses() { # WORDS OPTIONS...
   words=$1
