@@ -412,7 +412,8 @@ DividedRender RenderDivided(const World& world, RankTracer<Real>* tracer,
                             const DividedChoice& choice) {
   Mark(Moment::kRenderBegins);
   DividedRender divided;
-  Mail mail(world);
+  Mail mail(world, std::max(choice.package * sizeof(Traveller<Real>),
+                            FoundParts::kMost * sizeof(FoundPart)));
   if (tracer == nullptr) {
     divided.rendered.raster = Serve(mail, choice);
   } else {

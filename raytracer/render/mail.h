@@ -31,7 +31,8 @@ struct Letter {
 
 class Mail {
  public:
-  explicit Mail(const World& world) : world_(world) {}
+  /// No letter has more than `most_bytes`.
+  Mail(const World& world, std::size_t most_bytes) : world_(world), most_bytes_(most_bytes) {}
   /// Waits until all that was posted has been taken over.
   ~Mail();
   Mail(const Mail&) = delete;
@@ -62,7 +63,8 @@ class Mail {
   void PostBytes(int to, int tag, std::span<const std::byte> bytes);
 
   const World& world_;
-  std::list<Posted> under_way_;
+  std::size_t most_bytes_;
+  std::list<Posted> under_way_;  // in their order
   std::uint64_t posted_ = 0;
 };
 
