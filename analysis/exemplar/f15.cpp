@@ -18,9 +18,10 @@ constexpr int kReducedSide = 64;
 
 std::string LabelOf(int sixteenths) { return fmt::format("{}/16", sixteenths); }
 
-/// Of a quick look every fourth, and 15/16.
-std::vector<int> Fractions(bool quick) {
+/// All, or enough of them to see the curve's ends and its bend.
+std::vector<int> Fractions(bool reduced, bool quick) {
   if (quick) return {4, 15, kNodes};
+  if (reduced) return {1, 2, 4, 8, 12, 14, 15, kNodes};
   std::vector<int> all;
   for (int k = 1; k <= kNodes; ++k) all.push_back(k);
   return all;
@@ -31,7 +32,7 @@ std::vector<Case> Cases(const Setting& setting, bool quick) {
   std::vector<Case> cases;
   for (const std::string_view scene : kScenes) {
     if (quick && scene != "rings" && scene != "tree") continue;
-    for (const int k : Fractions(quick)) {
+    for (const int k : Fractions(setting.reduced, quick)) {
       std::vector<std::string> words = SceneWords(scene, side, quick);
       words.insert(words.end(), {"--partition", "bundles", "--bundle", std::to_string(side),
                                  "--select", "modulo"});

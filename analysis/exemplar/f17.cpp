@@ -125,28 +125,47 @@ Figure InfluxFigure(std::span<const MeasuredCase> cases) {
   return figure;
 }
 
+/// Of all tests of boxes and primitives, those of one node.
+double TestsShare(const RunMeasures& m, int rank) {
+  double of_rank = 0, all = 0;
+  for (const RankTimes& n : m.nodes) {
+    const double tests =
+        LastValue(m, "box tests", n.rank) + LastValue(m, "primitive tests", n.rank);
+    all += tests;
+    if (n.rank == rank) of_rank = tests;
+  }
+  return all > 0 ? of_rank / all : 0;
+}
+
 std::string CauseOf(std::span<const MeasuredCase> cases) {
   std::string text;
   for (const MeasuredCase& c : cases) {
-    const WaitedLongest waited = WaitedLongestFor(c.measures);
+    const RunMeasures& m = c.measures;
+    const WaitedLongest waited = WaitedLongestFor(m);
     if (waited.kind.empty()) continue;
-    text +=
-        fmt::format("{}{} of the objects: of {:.1f} node-seconds of waiting {:.0f} % for {} ({})",
-                    text.empty() ? "" : "; ", c.labels[0], WaitsFor(c.measures, -1),
-                    100 * waited.share, waited.culprit, waited.kind);
+    text += fmt::format("{}with {} {}: {:.0f} % of {:.0f} node-seconds of waiting ({})",
+                        text.empty() ? "Who was waited for: " : "; ", c.labels[0], waited.culprit,
+                        100 * waited.share, WaitsFor(m, -1), waited.kind);
+    if (waited.rank != m.host)
+      text += fmt::format(", it makes {:.0f} % of all tests", 100 * TestsShare(m, waited.rank));
   }
-  return text + ".";
+  return text.empty() ? "Nobody waited." : text + ". The work is where the objects are.";
 }
 
 Account Tell(std::span<const MeasuredSetting> settings) {
   Account account;
   const std::span<const MeasuredCase> cases = settings.front().cases;
-  for (const F17Run& r : RunsOf(cases))
-    account.sentence += fmt::format(
-        "{}With {}: busiest node {:.2f} times the mean while the host has bundles, {:.2f} after",
-        account.sentence.empty() ? "" : "; ", LabelOf(r.fraction), r.max_over_mean_before,
-        r.max_over_mean_after);
-  account.sentence += ".";
+  std::string correlations;
+  for (const F17Run& r : RunsOf(cases)) {
+    account.sentence +=
+        fmt::format("{} {:.2f} and {:.2f} with {}", account.sentence.empty() ? "" : ",",
+                    r.max_over_mean_before, r.max_over_mean_after, LabelOf(r.fraction));
+    correlations += fmt::format("{}{:.2f}", correlations.empty() ? "" : ", ", r.influx_correlation);
+  }
+  account.sentence =
+      "The busiest node computes, before and after the host's last bundle, times the mean:" +
+      account.sentence + "; net rays received and computing time correlate by " + correlations +
+      ".";
   account.cause = CauseOf(cases);
   account.figures.push_back(
       UtilisationFigure(cases, "F17-utilisation", settings.front().setting.machine));

@@ -68,7 +68,8 @@ WaitedLongest WaitedLongestFor(const RunMeasures& measures) {
   const auto longest =
       std::ranges::max_element(by_culprit, {}, [](const auto& c) { return c.second; });
   const double all = WaitsFor(measures, -1);
-  WaitedLongest waited{{}, {}, longest->second, all > 0 ? longest->second / all : 0};
+  WaitedLongest waited{
+      {}, {}, longest->second, all > 0 ? longest->second / all : 0, longest->first};
   waited.culprit =
       longest->first == measures.host ? "host" : fmt::format("node {}", longest->first);
   for (const NodeWait& w : measures.waits)  // longest first

@@ -37,12 +37,13 @@ std::array<double, kStateCount> MeanStates(const std::vector<RankTimes>& nodes);
 /// "92.2 s", "1.30 ms"
 std::string SecondsText(double seconds);
 
-/// "host", "node 3", "all": who was waited for longest, and its share of all waits.
+/// "host", "node 3": who was waited for longest, and its share of all waits.
 struct WaitedLongest {
   std::string kind;  // of its waits, mostly; empty: nobody waited
   std::string culprit;
   double seconds = 0;
   double share = 0;  // of all waits of nodes
+  int rank = -1;     // of the culprit
 };
 WaitedLongest WaitedLongestFor(const RunMeasures& measures);
 

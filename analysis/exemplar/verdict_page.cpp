@@ -19,7 +19,9 @@ constexpr std::string_view kVerdictStyle =
     "main>section.experiment+section.experiment{margin-top:56px;border-top:1px solid var(--hair);"
     "padding-top:18px}.experiment h2{font-size:20px}.experiment h3{margin-top:26px}"
     ".experiment p{max-width:74em}.claim{margin:6px 0 2px;font-size:15px}.answer{margin:10px 0 4px;"
-    "font-size:15px}.verdict{font-weight:650;white-space:nowrap}.refuted,.unstable{color:var(--"
+    "font-size:15px}.experiment h2 "
+    ".note{font-weight:400;font-size:14px}.verdict{font-weight:650;white-space:nowrap}.refuted,."
+    "unstable{color:var(--"
     "accent)}"
     "table.parts{margin-top:10px;width:auto}table.parts td,table.parts th{padding-right:26px}"
     "table.parts td:first-child{max-width:34em}figure.chart{max-width:1340px;margin-top:8px}"
@@ -52,12 +54,19 @@ std::string NumberText(double value) {
                                      : fmt::format("{:.2g}", value);
 }
 
-/// "1.02, 1.31 of >= 1": the checks in short.
+/// "1.02, 1.31 ≥ 1; 0.4 < 0.5": neighbours with one limit share it.
 std::string ChecksMarkup(const ClaimPart& part) {
   std::string text;
-  for (const Check& c : part.checks)
-    text += fmt::format("{}{}{}{}", text.empty() ? "" : ", ", c.Holds() ? "" : "<b>",
-                        NumberText(c.value), c.Holds() ? "" : "</b>");
+  for (std::size_t i = 0; i < part.checks.size(); ++i) {
+    const Check& c = part.checks[i];
+    text += c.Holds() ? NumberText(c.value) : "<b>" + NumberText(c.value) + "</b>";
+    const bool last = i + 1 == part.checks.size();
+    const bool shared =
+        !last && part.checks[i + 1].limit == c.limit && part.checks[i + 1].relation == c.relation;
+    text += shared ? ", "
+                   : fmt::format(" <span class=\"note\">{} {}</span>{}", SignOf(c.relation),
+                                 NumberText(c.limit), last ? "" : "; ");
+  }
   return text;
 }
 
@@ -87,7 +96,8 @@ std::string ElsewhereOf(const PaperResult& result, std::size_t part) {
 std::string PartsTable(const PaperResult& result) {
   const std::optional<std::size_t> compared = ComparedIn(result);
   std::string text =
-      "<table class=\"parts\"><thead><tr><th>the claim says</th><th>numbers (bold: fails)</th>"
+      "<table class=\"parts\"><thead><tr><th>the claim says</th><th>numbers, and what they have to "
+      "be (bold: fails)</th>"
       "<th>" +
       result.machine + "</th><th>turns</th>";
   if (compared) text += "<th>" + result.settings[*compared].setting.machine + "</th>";
@@ -173,6 +183,12 @@ std::string FigureMarkup(const Figure& figure) {
   return text + "<figure class=\"chart\">" + DrawSvg(scene) + "</figure>\n";
 }
 
+/// What an unstable claim is where nothing is varied.
+std::string AtReference(const Judgement& j) {
+  if (j.turns.empty() || !j.reference) return {};
+  return fmt::format(" <span class=\"note\">{} at the reference</span>", NameOf(*j.reference));
+}
+
 std::string Section(const PaperResult& result) {
   const PaperExperiment& e = *result.experiment;
   const Judgement& j = result.judgement;
@@ -180,7 +196,7 @@ std::string Section(const PaperResult& result) {
       "<section class=\"experiment\" id=\"{0}\"><header class=\"panel\"><h2>{0} \u00b7 {1}: "
       "{2}</h2>"
       "</header>\n",
-      e.name, EscapeMarkup(e.title), VerdictMarkup(j.verdict));
+      e.name, EscapeMarkup(e.title), VerdictMarkup(j.verdict) + AtReference(j));
   text += fmt::format("<p class=\"claim\"><b>Claim.</b> {}</p>\n<p class=\"facts\">{}{}</p>\n",
                       EscapeMarkup(e.claim), EscapeMarkup(e.method),
                       result.quick ? " \u00b7 <b>quick look: smaller than that</b>" : "");

@@ -31,8 +31,7 @@ Verdicts VerdictsOf(const std::vector<ClaimPart>& parts) {
 /// One part with one check for each number: at least 1.
 std::vector<ClaimPart> AtLeastOne(std::vector<double> values) {
   ClaimPart part{"at least 1", {}};
-  for (const double value : values)
-    part.checks.push_back({"x", value, Relation::kAtLeast, 1});
+  for (const double value : values) part.checks.push_back({"x", value, Relation::kAtLeast, 1});
   return {part};
 }
 
