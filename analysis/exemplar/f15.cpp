@@ -98,6 +98,7 @@ Figure RatioFigure(std::span<const MeasuredSetting> settings) {
     chart.x_ticks = {{0, "0"}, {0.25, "4/16"}, {0.5, "8/16"}, {0.75, "12/16"}, {1, "all"}};
     chart.x_title = "share of the objects on each node";
     chart.y_title = "time / replicated time";
+    chart.names_first = true;
     chart.y_least = 0;
     chart.y_most = most * 1.05;
     chart.thresholds = {{2, "twice the replicated time"}};

@@ -172,21 +172,23 @@ std::string CauseOf(std::span<const MeasuredSetting> settings) {
       "Tiled: imbalance; the busiest node computes {:.2f} to {:.2f} times the mean, with scattered "
       "at most {:.2f} times.",
       tiled_least, tiled_busiest, scattered_busiest);
-  const auto tell = [&text](const MeasuredSetting& s, const std::string& where) {
-    double host = 0, all = 0;
+  const auto tell = [&text](const MeasuredSetting& s, std::string_view partition,
+                            std::string_view where) {
+    double host = 0, all = 0, nodes = 0;
     for (const MeasuredCase& c : s.cases)
-      if (c.labels[1] == "bundles") {
-        host += WaitsFor(c.measures, c.measures.host);
+      if (c.labels[1] == partition) {
+        host += c.measures.host < 0 ? 0 : WaitsFor(c.measures, c.measures.host);
         all += WaitsFor(c.measures, -1);
+        nodes += NodeSeconds(c.measures);
       }
-    text += fmt::format(
-        " Bundles{}: of {:.0f} node-seconds of waiting, {:.0f} ({:.0f} %) are "
-        "charged to the host.",
-        where, all, host, all > 0 ? 100 * host / all : 0);
+    text +=
+        fmt::format(" {}: nodes wait {:.1f} % of their time, {:.0f} % of it charged to the host.",
+                    where, 100 * all / nodes, all > 0 ? 100 * host / all : 0);
   };
-  tell(settings.front(), "");
+  tell(settings.front(), "scattered", "Scattered");
+  tell(settings.front(), "bundles", "Bundles");
   if (const auto* slow = FindSetting(settings, "host overhead", "10 ms"))
-    tell(*slow, " with a host that takes 10 ms a message");
+    tell(*slow, "bundles", "Bundles with a host that takes 10 ms a message");
   return text;
 }
 

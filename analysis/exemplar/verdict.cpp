@@ -96,15 +96,18 @@ std::optional<Verdict> VerdictOf(const ClaimPart& part) {
 }
 
 std::optional<Verdict> VerdictOf(std::span<const ClaimPart> parts) {
-  std::size_t count = 0, holding = 0, refuted = 0;
+  std::size_t count = 0, holding = 0, refuted = 0, unasked = 0;
   for (const ClaimPart& part : parts) {
     const std::optional<Verdict> verdict = VerdictOf(part);
-    if (!verdict) continue;
     ++count;
+    if (!verdict) {
+      ++unasked;
+      continue;
+    }
     holding += *verdict == Verdict::kHolds ? 1 : 0;
     refuted += *verdict == Verdict::kRefuted ? 1 : 0;
   }
-  return Joined(holding, refuted, count);
+  return unasked == count ? std::nullopt : Joined(holding, refuted, count);
 }
 
 Judgement Judge(std::span<const PartsAt> settings) {

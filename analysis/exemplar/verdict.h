@@ -42,7 +42,8 @@ std::string_view NameOf(Verdict verdict);
 
 /// None when nothing was checked.
 std::optional<Verdict> VerdictOf(const ClaimPart& part);
-/// Of all parts that were checked: holds if all hold, refuted if all are refuted.
+/// Holds if all parts hold, refuted if all are refuted. A part in which nothing was checked does
+/// neither: what did not arise was not shown. None when nothing at all was checked.
 std::optional<Verdict> VerdictOf(std::span<const ClaimPart> parts);
 
 /// What was varied, and how far. An empty parameter: nothing, the reference.

@@ -16,7 +16,8 @@ namespace stipple {
 namespace {
 
 constexpr std::string_view kVerdictStyle =
-    "main>section.experiment+section.experiment{margin-top:56px;border-top:1px solid var(--hair);"
+    "table.parts+section.experiment{margin-top:34px}main>section.experiment+section.experiment{"
+    "margin-top:56px;border-top:1px solid var(--hair);"
     "padding-top:18px}.experiment h2{font-size:20px}.experiment h3{margin-top:26px}"
     ".experiment p{max-width:74em}.claim{margin:6px 0 2px;font-size:15px}.answer{margin:10px 0 4px;"
     "font-size:15px}.experiment h2 "

@@ -47,9 +47,10 @@ struct Plane {
   double right = 0;
 
   explicit Plane(const LineChart& of) : chart(of) {
-    double names = 12;
+    double names = 16;
     for (const ChartLine& line : chart.lines)
-      names = std::max(names, TextWidth(line.name, kText, true) + kNameGap + 4);
+      if (!chart.names_first)
+        names = std::max(names, TextWidth(line.name, kText, true) + kNameGap + 4);
     right = chart.width - names;
   }
   double Bottom() const { return chart.height - kBottom; }
@@ -71,9 +72,9 @@ struct Plane {
 };
 
 std::string YText(const LineChart& chart, double value, double step) {
-  if (chart.y_percent) return fmt::format("{:.0f}%", 100 * value);
-  return fmt::format("{:.{}f}", value,
-                     std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9))));
+  const double scale = chart.y_percent ? 100 : 1;
+  const int decimals = std::max(0, -static_cast<int>(std::floor(std::log10(step * scale) + 1e-9)));
+  return fmt::format("{:.{}f}{}", value * scale, decimals, chart.y_percent ? "%" : "");
 }
 
 Layer Grid(const Plane& plane) {
@@ -162,13 +163,16 @@ Layer Lines(const Plane& plane) {
   return layer;
 }
 
-/// Names stand at the ends of their lines, moved apart where they would meet.
+/// Names stand at one end of their lines, moved apart where they would meet.
 Layer Names(const Plane& plane) {
   Layer layer{"labels", {}};
+  const bool first = plane.chart.names_first;
   std::vector<std::pair<double, const ChartLine*>> ends;
   for (const ChartLine& line : plane.chart.lines)
     if (!line.points.empty() && !line.name.empty())
-      ends.emplace_back(plane.YOf(line.points.back().y), &line);
+      ends.emplace_back(
+          first ? plane.YOf(line.points.front().y) - kLine * 0.7 : plane.YOf(line.points.back().y),
+          &line);
   std::ranges::stable_sort(ends, {}, [](const auto& end) { return end.first; });
   for (std::size_t i = 1; i < ends.size(); ++i)
     ends[i].first = std::max(ends[i].first, ends[i - 1].first + kLine);
@@ -179,7 +183,7 @@ Layer Names(const Plane& plane) {
   }
   for (const auto& [y, line] : ends)
     layer.shapes.emplace_back(
-        TextShape{plane.right + kNameGap,
+        TextShape{first ? plane.XOf(line->points.front().x) + 2 : plane.right + kNameGap,
                   y,
                   line->name,
                   {.size = kText, .colour = ColourOf(*line).text, .bold = true}});

@@ -12,7 +12,7 @@
 namespace stipple {
 
 struct ChartLine {
-  std::string name{};  // at its right end; empty: none
+  std::string name{};  // at its end; empty: none
   std::vector<Point> points{};
   std::size_t colour = 0;  // one of a few
   bool discs = true;       // a disc at each point
@@ -43,7 +43,8 @@ struct LineChart {
   std::vector<ChartLine> lines{};
   std::vector<ChartRule> thresholds{};  // values
   std::vector<ChartRule> moments{};     // of the x axis
-  double width = 640, height = 300;     // pixels
+  bool names_first = false;          // names stand above the lines' first points, as the ends meet
+  double width = 640, height = 300;  // pixels
 };
 
 Scene LineChartView(const LineChart& chart);

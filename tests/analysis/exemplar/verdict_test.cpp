@@ -51,6 +51,13 @@ TEST(Verdict, FollowsFromTheChecksAndANumberThatIsNoneFails) {
   EXPECT_TRUE((Check{"", 1, Relation::kAtMost, 1}.Holds()));
 }
 
+TEST(Verdict, AClaimOfWhichAPartDoesNotAriseHoldsInPartAtMost) {
+  const ClaimPart holds = AtLeastOne({1})[0], fails = AtLeastOne({0})[0], silent{"silent", {}};
+  EXPECT_EQ(VerdictOf(std::vector{holds, silent}), kInPart);
+  EXPECT_EQ(VerdictOf(std::vector{fails, fails}), kRefuted);
+  EXPECT_EQ(VerdictOf(std::vector{silent, silent}), std::nullopt);
+}
+
 TEST(Judge, AVerdictThatIsTheSameEverywhereStands) {
   const Judgement j = Judge(std::vector{At("", "", 0, {2}), At("work", "more", 1, {1.5})});
   EXPECT_EQ(j.verdict, kHolds);
