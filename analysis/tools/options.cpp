@@ -47,6 +47,10 @@ void CommandOptions::Add(const Text& text, bool& target) {
   Describe(*parser_->app.add_flag(text.name, target, text.help), text);
 }
 
+void CommandOptions::Add(const Text& text, std::vector<std::string>& target) {
+  Describe(*parser_->app.add_option(text.name, target, text.help), text);
+}
+
 void CommandOptions::Footer(const std::string& text) { parser_->app.footer(text); }
 
 bool CommandOptions::Parse(const Arguments& arguments) {

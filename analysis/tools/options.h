@@ -34,6 +34,8 @@ class CommandOptions {
   void Add(const Text& text, double& target);
   void Add(const Text& text, unsigned& target);
   void Add(const Text& text, bool& target);
+  /// Takes one or more.
+  void Add(const Text& text, std::vector<std::string>& target);
   /// What the help ends with.
   void Footer(const std::string& text);
 

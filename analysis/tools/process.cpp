@@ -82,6 +82,22 @@ std::optional<std::string> OutputOf(const std::vector<std::string>& command) {
   return output;
 }
 
+int RunQuietly(const std::vector<std::string>& command, const std::string& said) {
+  const std::vector<char*> argv = Argv(command);
+  const char* path = said.c_str();
+  const pid_t child = fork();
+  if (child == 0) {
+    const int file = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    const int null = open("/dev/null", O_RDONLY | O_CLOEXEC);
+    dup2(file, STDOUT_FILENO);
+    dup2(file, STDERR_FILENO);
+    dup2(null, STDIN_FILENO);
+    execv(argv[0], argv.data());
+    _exit(127);
+  }
+  return child < 0 ? 127 : WaitFor(child);
+}
+
 int RunToEnd(const std::vector<std::string>& command, int ignored) {
   const std::vector<char*> argv = Argv(command);
   sigset_t passed_on;

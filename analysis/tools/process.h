@@ -19,6 +19,10 @@ std::optional<std::string> OutputOf(const std::vector<std::string>& command);
 /// run.
 int RunToEnd(const std::vector<std::string>& command, int ignored = 0);
 
+/// Runs a command to its end; what it says, on either channel, goes to the file. May be called by
+/// several threads. Returns its exit status, 128 + n for signal n, 127 when it cannot be run.
+int RunQuietly(const std::vector<std::string>& command, const std::string& said);
+
 /// From now on becomes true when this process is told to end: by SIGINT, SIGTERM or SIGHUP.
 const std::atomic<bool>& StopOnSignals();
 

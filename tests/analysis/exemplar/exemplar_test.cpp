@@ -7,7 +7,10 @@
 
 #include "analysis/exemplar/chart_scene.h"
 #include "analysis/exemplar/exemplar_page.h"
+#include "analysis/exemplar/figure_scene.h"
 #include "analysis/exemplar/measured_chart.h"
+#include "analysis/exemplar/result_files.h"
+#include "analysis/exemplar/verdict_page.h"
 #include "analysis/trace/input_error.h"
 #include "analysis/views/palette.h"
 
@@ -108,6 +111,31 @@ TEST(ExemplarPage, HoldsEveryChartItsSentenceAndItsFigures) {
   EXPECT_EQ(Count(page, "<tr>"), 6U) << "a head and five points";
   EXPECT_EQ(Count(page, "<td>recommended</td>"), 2U);
   EXPECT_EQ(page.find("http"), page.npos) << "nothing from outside";
+}
+
+/// Numbers that nobody measured: node 1 has the more to do the fewer messages there are.
+std::vector<RunMeasures> MadeUp(std::span<const Case> cases) {
+  std::vector<RunMeasures> all;
+  for (const Case& c : cases) {
+    RunMeasures m{.simulated_s = 2, .hash = "0", .messages = 9, .host = 2};
+    const double more = c.labels.back() == "512" ? 0.9 : 0.0;
+    m.nodes = {{0, 1.9 - more, 0.001, 0.002, 0.097 + more}, {1, 1.95, 0.001, 0.002, 0.047}};
+    m.waits = {{"end-imbalance", 1, 0.1 + more}, {"late-sender", 2, 0.04}};
+    all.push_back(m);
+  }
+  return all;
+}
+
+TEST(VerdictPage, TellsClaimVerdictCauseFiguresAndCommands) {
+  const PaperResult result = Examine(kF12, "ipsc2", true, MadeUp);
+  EXPECT_EQ(result.judgement.verdict, Verdict::kHolds);
+  const std::string page = VerdictPage({"Claims", "lead", {result}});
+  EXPECT_NE(page.find("<span class=\"verdict\">holds</span>"), page.npos);
+  EXPECT_NE(page.find("96 % of it for node 1 (end-imbalance)"), page.npos) << "from the waits";
+  EXPECT_EQ(Count(page, "<svg"), 2U) << "the reference's and the cluster of today's";
+  EXPECT_EQ(Count(page, "<code>stipple simulate --machine ipsc2"), 2U);
+  EXPECT_EQ(page.find("http"), page.npos) << "nothing from outside";
+  EXPECT_NE(ResultJson(result).find("\"verdict\": \"holds\""), std::string::npos);
 }
 
 }  // namespace
