@@ -29,6 +29,13 @@ bool HoldsText(const Table& table, std::size_t column) {
   return false;
 }
 
+/// False: of no row was it recorded.
+bool WasRecorded(const Table& table, std::size_t column) {
+  return table.rows.empty() || std::ranges::any_of(table.rows, [column](const auto& row) {
+           return column < row.size() && !std::holds_alternative<std::monostate>(row[column]);
+         });
+}
+
 template <class Keep>
 std::vector<std::size_t> Asked(const Table& table, const TableColumns& columns,
                                std::span<const std::string> asked, Keep keep) {
@@ -67,7 +74,8 @@ TableColumns ColumnsOf(const Table& table) {
 
 std::vector<std::size_t> ChosenValues(const Table& table, const TableColumns& columns,
                                       std::span<const std::string> asked) {
-  return Asked(table, columns, asked, [](std::size_t) { return true; });
+  return Asked(table, columns, asked,
+               [&table](std::size_t column) { return WasRecorded(table, column); });
 }
 
 std::vector<std::size_t> AlikeValues(const Table& table, const TableColumns& columns,

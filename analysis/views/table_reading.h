@@ -28,7 +28,7 @@ struct TableColumns {
 };
 TableColumns ColumnsOf(const Table& table);
 
-/// Those of `columns` that are asked for by name; all, if none is.
+/// Those of `columns` that are asked for by name; if none is, all that were recorded.
 std::vector<std::size_t> ChosenValues(const Table& table, const TableColumns& columns,
                                       std::span<const std::string> asked);
 /// As above; if none is asked for, only those that count the same as the first.

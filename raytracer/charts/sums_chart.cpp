@@ -115,10 +115,12 @@ void AddScene(Session& session, const ChartScene& scene, ChartTable& table, Gain
     const Outcome& o = outcomes[m];
     const bool keeps = methods[m].name == kSorted;
     const double held = methods[m].bytes_held * (keeps ? per_point : 1);
+    const std::string name =
+        keeps ? std::string(kSorted) : fmt::format("{}: {:.0f} bytes", methods[m].name, held);
     table.points.push_back(
         {scene.name,
-         std::string(methods[m].name),
-         fmt::format("{}: {:.0f} bytes a pixel", methods[m].name, held),
+         name,
+         name,
          o.cpu_s,
          static_cast<double>(o.apart),
          methods[m].name == kRecommended,

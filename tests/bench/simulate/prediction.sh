@@ -5,7 +5,7 @@
 
 prediction_partitions=("tiled" "scattered" "guided" "bundles --bundle 512")
 # What a unit of work costs, in picoseconds: box test, primitive test, ray, shadow ray. Their sum is set by one real rank.
-declare -A prediction_prices=([tests]="" [rays]=0,0,350000,250000 [alike]=0,0,300000,300000)
+declare -A prediction_prices=(["by tests"]="" ["by rays"]=0,0,350000,250000 ["rays alike"]=0,0,300000,300000)
 
 # usage: prediction_simulated PRICES NODES SCALE ARGUMENTS: seconds of rendering in $simulated_s, the simulator's in $simulated_cpu
 prediction_simulated() {
@@ -50,8 +50,9 @@ prediction_point() {
   awk -v panel="$panel" -v series="$series" -v width="$width" '
     { ratio = $1 * (512 / width) ^ 2 / $2; error = ratio > 1 ? ratio - 1 : 1 - ratio; sum += error; cpu += $3
       if (error > worst) worst = error; ratios = ratios sprintf(",%.4f", ratio) }
-    END { printf "%s,%s,%s: %dx%d,%.4f,%.5f,%d,%.5f%s\n", panel, series, series, width, width, cpu / NR, sum / NR,
-          series == "tests" && width == 256, worst, ratios }' "$work/errors"
+    END { label = series == "by tests" && width != 256 ? width "x" width : ""  # more would overlap
+          printf "%s,%s,%s,%.4f,%.5f,%d,%.5f%s\n", panel, series, label, cpu / NR, sum / NR,
+                 series == "by tests" && width == 128, worst, ratios }' "$work/errors"
 }
 
 # usage: prediction_scale PRICES SCENE: what makes a simulated node as fast as one real rank
@@ -69,14 +70,14 @@ run_prediction() {
     panel=$(cut -d' ' -f2 <<< "$scene")
     prediction_measure "$scene" || return 1
     echo "  $panel: one rank $prediction_one s, two $(paste -d' ' <(printf '%s\n' "${prediction_partitions[@]}") <(printf '%s s\n' "${prediction_truth[@]}") | paste -sd,)"
-    for charge in tests rays alike; do
+    for charge in "by tests" "by rays" "rays alike"; do
       scale=$(prediction_scale "${prediction_prices[$charge]}" "$scene")
       for width in 64 128 256 512; do
-        [ $charge = tests ] || [ $width -lt 512 ] || continue  # others are as far off with more pixels
+        [ "$charge" = "by tests" ] || [ $width -lt 512 ] || continue  # others are as far off with more pixels
         prediction_point "$panel" "$charge" "$width" "${prediction_prices[$charge]}" "$scale" "$scene"
       done
     done >> "$points"
-    prediction_point "$panel" "as shipped" 256 "" 1 "$scene" >> "$points"
+    prediction_point "$panel" "shipped prices" 256 "" 1 "$scene" >> "$points"
   done
   prediction_table "$points" > "${PREDICTION_CSV:-$work/prediction.csv}"
   sed -n 's/^# sentence: /  /p' "${PREDICTION_CSV:-$work/prediction.csv}"
@@ -86,13 +87,14 @@ run_prediction() {
 prediction_table() { # POINTS
   echo "# title: Simulating two ranks"
   awk -F, '
-    $6 == 1 { error = error == "" || $5 < error ? $5 : error; most = $5 > most ? $5 : most; taken += $4; ++n }
-    $2 == "tests" && $3 ~ / 512x/ { full += $4; if ($5 > full_most) full_most = $5 }
-    $2 == "alike" && $3 ~ / 256x/ && $5 > alike { alike = $5 }
-    $2 == "as shipped" && $5 > shipped { shipped = $5 }
-    END { printf "# sentence: Simulate a quarter of the pixels, with work charged by tests and the speed of one measured rank: %.1f to %.1f %% from the times of two real ranks for %.2f of the CPU time of all pixels, which come within %.1f %%; every ray alike misses by up to %.1f %%, the shipped prices without that measurement by up to %.1f %%.\n",
-          100 * error, 100 * most, taken / full, 100 * full_most, 100 * alike, 100 * shipped }' "$1"
-  echo "# effort: 512 x 512 pixels, real times: least of $rounds runs of 2 ranks; mean over four partitions; $(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -1)"
+    function most(a, b) { return a > b ? a : b }
+    $6 == 1 { least = least == "" || $5 < least ? $5 : least; taken_most = most(taken_most, $5); taken += $4 }
+    $2 == "by tests" && $3 ~ /^512x/ { full += $4; full_most = most(full_most, $5) }
+    $2 == "rays alike" { alike = most(alike, $5) }
+    $2 == "shipped prices" { shipped = most(shipped, $5) }
+    END { printf "# sentence: Simulate a sixteenth of the pixels, at the speed of one measured rank: %.1f to %.1f %% from the times of two real ranks, for %.2f of the CPU time of all pixels, which miss by up to %.1f %%; charging every ray alike misses by up to %.1f %%, the shipped prices without that measurement by up to %.1f %%.\n",
+          100 * least, 100 * taken_most, taken / full, 100 * full_most, 100 * alike, 100 * shipped }' "$1"
+  echo "# effort: 512 x 512 pixels, real times: least of $rounds runs; mean of four partitions; $(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -1)"
   echo "# kind: xy"
   echo "# x: cpu_s, CPU seconds of the simulator for a run"
   echo "# y: error, simulated from measured time, of 1"
