@@ -146,7 +146,7 @@ std::string CauseOf(std::span<const MeasuredCase> cases) {
   if (!(all > 0)) return "Divided runs take no more node time than replicated ones.";
   return fmt::format(
       "Of the node time that divided runs take more than replicated ones, all fractions and scenes "
-      "together, {:.0f} % is idle (work is where the objects are), {:.0f} % computing "
+      "together, {:.0f} % is idle, {:.0f} % computing "
       "(boxes and objects that several nodes test), {:.0f} % messages and their start-up.",
       100 * more.idle_s / all, 100 * more.user_s / all,
       100 * (more.system_s + more.message_s) / all);
