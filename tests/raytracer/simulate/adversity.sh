@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# On a machine that is the same every time: ranks that keep what is not full wait for ever, which is found and said; tiles are the worst partition of a scene in one corner; what is refused leaves no archive.
+# On a machine that is the same every time: ranks that keep what is not full wait for ever, which is found and said; tiles
+# are the worst partition of a scene in one corner; what is refused leaves no archive.
 # usage: adversity.sh STIPPLE RAYTRACER BREAKABLE: BREAKABLE/lib/stipple/simulate has a ray tracer that heeds STIPPLE_BREAK
 set -eu
 stipple=$1
