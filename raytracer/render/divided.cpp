@@ -54,7 +54,7 @@ bool Intact(std::string_view part) {
 #else
 constexpr bool Intact(std::string_view) { return true; }
 #endif
-constexpr std::string_view kPartFull = "part-full packages", kSecondWave = "second wave";
+constexpr std::string_view kPartFull = "part-full packages";
 
 /// Detectors by number: each sees its own signals only.
 struct DetectorSignal {
@@ -132,7 +132,7 @@ class Worker {
         supply_(world, mail, row_, choice.points, kAsk),
         neighbours_(static_cast<std::size_t>(choice.holders)),
         waiting_(static_cast<std::size_t>(choice.holders)),
-        four_counters_(world.rank, choice.holders, Intact(kSecondWave) ? 2 : 1),
+        four_counters_(world.rank, choice.holders),
         safra_(world.rank, choice.holders),
         progress_(PointCount(choice.points.raster) / static_cast<std::size_t>(choice.holders),
                   world.rank == 0) {
@@ -311,9 +311,7 @@ class Worker {
     if (EndIsFound()) End();
   }
 
-  bool EndIsFound() const {
-    return world_.rank == 0 && four_counters_.ended() && (safra_.ended() || !Intact(kSecondWave));
-  }
+  bool EndIsFound() const { return world_.rank == 0 && four_counters_.ended() && safra_.ended(); }
 
   void End() {
     if (ended_) return;
