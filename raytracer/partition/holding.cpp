@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <functional>
 #include <numeric>
+#include <queue>
+#include <tuple>
 #include <utility>
 
 namespace stipple::raytracer {
@@ -57,32 +59,55 @@ std::optional<std::vector<int>> Deal(int ranks, std::span<const LeafLoad> loads,
 
 std::optional<Holding> Holding::Coupled(int ranks, std::span<const LeafLoad> leaves,
                                         std::uint64_t most_bytes) {
-  std::vector<std::uint32_t> by_heat(leaves.size()), rest(leaves.size());
-  std::iota(by_heat.begin(), by_heat.end(), 0U);
-  rest = by_heat;
-  std::ranges::stable_sort(by_heat, [&](std::uint32_t a, std::uint32_t b) {
-    return leaves[a].work * std::max<std::uint64_t>(leaves[b].bytes, 1) >
-           leaves[b].work * std::max<std::uint64_t>(leaves[a].bytes, 1);
-  });
-  std::ranges::stable_sort(rest, std::ranges::greater(),
+  std::vector<std::uint32_t> by_work(leaves.size());
+  std::iota(by_work.begin(), by_work.end(), 0U);
+  std::ranges::stable_sort(by_work, std::ranges::greater(),
                            [&](std::uint32_t leaf) { return leaves[leaf].work; });
-  std::optional<std::vector<int>> owners = Deal(ranks, leaves, rest, most_bytes);
+  const std::optional<std::vector<int>> owners = Deal(ranks, leaves, by_work, most_bytes);
   if (!owners) return std::nullopt;
   Holding holding(ranks, static_cast<std::uint32_t>(leaves.size()));
-  std::uint64_t room = most_bytes;
-  for (const std::uint32_t hot : by_heat) {
-    if (leaves[hot].bytes > room) continue;
-    std::vector<std::uint32_t> others = rest;
-    std::erase(others, hot);
-    auto dealt = Deal(ranks, leaves, others, room - leaves[hot].bytes);
-    if (!dealt) continue;
-    for (int rank = 0; rank < ranks; ++rank) holding.Give(hot, rank);
-    room -= leaves[hot].bytes;
-    rest = std::move(others);
-    owners = std::move(dealt);
+  std::vector<std::uint64_t> room(static_cast<std::size_t>(ranks), most_bytes);
+  for (std::size_t i = 0; i < by_work.size(); ++i) {
+    holding.Give(by_work[i], (*owners)[i]);
+    room[static_cast<std::size_t>((*owners)[i])] -= leaves[by_work[i]].bytes;
   }
-  for (std::size_t i = 0; i < rest.size(); ++i) holding.Give(rest[i], (*owners)[i]);
+  holding.Replicate(leaves, std::move(room));
   return holding;
+}
+
+void Holding::Replicate(std::span<const LeafLoad> leaves, std::vector<std::uint64_t> room) {
+  double all = 0;
+  for (const LeafLoad& leaf : leaves) all += static_cast<double>(leaf.work);
+  // A pilot sees little of a leaf with little work: none is taken to have less than this.
+  const double least = all / static_cast<double>(std::max<std::size_t>(leaves.size(), 1)) / 4;
+  struct Offer {
+    double gain;  // what one more holder takes from each of the others, per byte
+    std::uint32_t leaf;
+    bool operator<(const Offer& other) const {
+      return std::tie(gain, other.leaf) < std::tie(other.gain, leaf);
+    }
+  };
+  const auto offer = [&](std::uint32_t leaf) {
+    const auto holders = static_cast<double>(holders_[leaf].size());
+    const double work = std::max(static_cast<double>(leaves[leaf].work), least);
+    const auto bytes = static_cast<double>(std::max<std::uint64_t>(leaves[leaf].bytes, 1));
+    return Offer{work / (holders * (holders + 1) * bytes), leaf};
+  };
+  std::priority_queue<Offer> offers;
+  for (std::uint32_t leaf = 0; leaf < this->leaves(); ++leaf) offers.push(offer(leaf));
+  std::size_t next = 0;  // in turn, so that all fill up alike
+  while (!offers.empty()) {
+    const std::uint32_t leaf = offers.top().leaf;
+    offers.pop();
+    for (std::size_t tried = 0; tried < room.size(); ++tried) {
+      const std::size_t rank = next++ % room.size();
+      if (room[rank] < leaves[leaf].bytes || Holds(static_cast<int>(rank), leaf)) continue;
+      Give(leaf, static_cast<int>(rank));
+      room[rank] -= leaves[leaf].bytes;
+      offers.push(offer(leaf));
+      break;
+    }
+  }
 }
 
 double Holding::Balance(std::span<const LeafLoad> leaves) const {

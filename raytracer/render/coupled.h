@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Ray and object partitions in concert: a pilot of 16 x 16 rays finds which leaves cost most, these
-// go to every rank as far as memory allows, the others are dealt so that their work is even; and
-// who asks for rays gets, if possible, such as begin in what it holds.
+// Ray and object partitions in concert: a pilot of 16 x 16 rays finds which leaves cost most; each
+// leaf has the more holders the more it costs, as far as memory allows; and who asks for rays gets,
+// if possible, such as begin in what it holds.
 #ifndef STIPPLE_RAYTRACER_RENDER_COUPLED_H
 #define STIPPLE_RAYTRACER_RENDER_COUPLED_H
 
