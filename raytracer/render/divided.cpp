@@ -40,7 +40,7 @@ constexpr std::size_t kCredits = 8;
 constexpr int kRaysPerLook = 16;
 
 // No eye ray is begun while so many full packages cannot be sent: what is under way takes memory.
-constexpr std::size_t kMostPackagesHere = 64;
+constexpr std::size_t kMostPackagesHere = 512;
 
 /// Detectors by number: each sees its own signals only.
 struct DetectorSignal {
