@@ -42,7 +42,7 @@ constexpr std::size_t kCredits = 8;
 constexpr int kRaysPerLook = 16;
 
 // No eye ray is begun while so many full packages cannot be sent: what is under way takes memory.
-constexpr std::size_t kMostPackagesHere = 64;
+constexpr std::size_t kMostPackagesHere = 512;
 
 /// Whether a part of the protocol is there. In the build for tests one can be taken away, to see
 /// that it is missed.
