@@ -69,9 +69,6 @@ constexpr StartUp kIpsc2Send{135'000, 375'000}, kIpsc2Receive{135'000, 135'000};
 constexpr StartUp kIpsc860Send{45'000, 125'000}, kIpsc860Receive{45'000, 45'000};
 constexpr StartUp kModernSend{250, 250}, kModernReceive{250, 250};
 
-// Asking for a message is software, too, of which nobody published a time: about a third of taking
-// one.
-
 // docs/stipple-simulate.md says where prices come from.
 constexpr Prices kModernPrices{4'150, 9'700, 90'000, 78'000};
 constexpr Prices kIpsc2Prices{66'000'000, 163'000'000, 420'000'000, 280'000'000};

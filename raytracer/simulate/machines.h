@@ -26,7 +26,7 @@ struct MachineRow {
       always_host;  // a host beside the nodes in every run, else only where the partition wants one
   Prices prices;
   StartUp send, receive;
-  double look_s;            // what asking takes whether a message is there, or one is gone
+  double look_s;  // to ask whether a message is there, or gone; a third of taking one, assumed
   double host_overhead_s;   // of a message at the host; --host-overhead
   double bytes_per_second;  // of a link, in each direction
   double hop_s;
