@@ -121,8 +121,10 @@ RunMeasures MeasureArchive(const std::string& archive) {
   m.waits = WaitsOfNodes(analysis);
   if (const std::optional<std::int64_t> end_ns = SupplyEndOf(trace)) {
     m.supply_s = Seconds(*end_ns);
-    m.before = NodeTimes(analysis, {.end_ns = *end_ns});
-    m.after = NodeTimes(analysis, {.begin_ns = *end_ns});
+    Selection before, after;
+    before.end_ns = after.begin_ns = *end_ns;
+    m.before = NodeTimes(analysis, before);
+    m.after = NodeTimes(analysis, after);
   }
   m.utilisation = UtilisationOf(analysis);
   m.counters = LastValues(trace);
