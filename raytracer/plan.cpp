@@ -246,9 +246,11 @@ template SceneFacts FactsOf(const Scene&, Model<long double>&);
 template <class Real>
 SceneFacts FactsOf(const World& world, SceneParts<Real>& parts) {
   SceneFacts facts;
-  for (const auto& leaf : parts.held) {
-    if (!leaf) continue;
-    const SceneFacts more = FactsOf(parts.scene, leaf->model);
+  const HeldPart<Real>* last = nullptr;  // each leaf has its own, or all have the same
+  for (const auto& part : parts.held) {
+    if (!part || part.get() == last) continue;
+    last = part.get();
+    const SceneFacts more = FactsOf(parts.scene, part->model);
     facts.reach = std::max(facts.reach, more.reach);
     facts.smallest = std::min(facts.smallest, more.smallest);
   }

@@ -35,6 +35,19 @@ std::uint64_t MostBytes(const Holding& holding, const std::vector<std::uint64_t>
   return most;
 }
 
+/// Of all leaves of a rank, each once; ascending.
+std::vector<std::uint32_t> ObjectsOf(const ObjectTree& tree,
+                                     const std::vector<std::uint32_t>& leaves) {
+  std::vector<std::uint32_t> numbers;
+  for (const std::uint32_t leaf : leaves) {
+    const std::vector<std::uint32_t>& some = tree.ObjectsIn(leaf);
+    numbers.insert(numbers.end(), some.begin(), some.end());
+  }
+  std::ranges::sort(numbers);
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  return numbers;
+}
+
 /// Who holds what: as chosen, else as many leaves each as fit.
 Holding Divide(const Shapes& shapes, const ObjectTree& tree, const Division& division,
                std::uint64_t allowed) {
@@ -48,17 +61,20 @@ Holding Divide(const Shapes& shapes, const ObjectTree& tree, const Division& div
   else if (division.fill)
     while (each < ranks && MostBytes(Holding::Even(ranks, each + 1), bytes) <= allowed) ++each;
   Holding holding = Holding::Even(ranks, each);
-  RequireMemory(MostBytes(holding, bytes), allowed,
+  std::uint64_t most = 0;
+  for (int rank = 0; rank < ranks; ++rank)
+    most = std::max(most, BytesToBuild(shapes, ObjectsOf(tree, holding.LeavesOf(rank))));
+  RequireMemory(most, allowed,
                 fmt::format("divided among {} ranks, {} {} each, the objects of one take", ranks,
                             each, each == 1 ? "leaf" : "leaves"));
   return holding;
 }
 
 template <class Real>
-std::unique_ptr<LeafPart<Real>> BuildLeaf(const Shapes& shapes,
+std::shared_ptr<HeldPart<Real>> BuildPart(const Shapes& shapes,
                                           const std::vector<std::uint32_t>& numbers,
                                           const std::string& kernel) {
-  auto part = std::make_unique<LeafPart<Real>>();
+  auto part = std::make_shared<HeldPart<Real>>();
   part->model = BuildModel<Real>(SubsetOf(shapes, numbers), HierarchyFor(kernel));
   part->numbers = numbers;
   part->kernel = MakeKernel(kernel, part->model);
@@ -66,28 +82,29 @@ std::unique_ptr<LeafPart<Real>> BuildLeaf(const Shapes& shapes,
 }
 
 /// Leaves of a coupled scene: on few ranks several for each, so that work can be dealt evenly. On
-/// many as many as there are, for each leaf on a ray's way costs the walk of another hierarchy:
-/// with 128 instead of 32 leaves a ray took 13 to 52 % more box tests.
+/// many as many as there are, for each leaf on a ray's way may be another journey.
 int CoupledLeaves(int ranks) {
   constexpr int kOnEach = 4, kEnough = 32;
   return std::max(ranks, std::min(kOnEach * ranks, kEnough));
 }
 
+/// `each_leaf`: by a hierarchy of its own.
 template <class Real>
-void Build(const Shapes& shapes, const std::string& kernel, int rank, SceneParts<Real>& parts) {
-  parts.held.resize(parts.tree.leaves());
+void Build(const Shapes& shapes, const std::string& kernel, int rank, bool each_leaf,
+           SceneParts<Real>& parts) {
+  parts.held.assign(parts.tree.leaves(), nullptr);
   parts.model_bytes = 0;
-  for (std::uint32_t leaf = 0; leaf < parts.tree.leaves(); ++leaf) {
-    std::unique_ptr<LeafPart<Real>>& held = parts.held[leaf];
-    if (rank >= parts.holding.ranks() || !parts.holding.Holds(rank, leaf)) {
-      held.reset();
-      continue;
-    }
-    if (!held) held = BuildLeaf<Real>(shapes, parts.tree.ObjectsIn(leaf), kernel);
-    parts.rounding = held->kernel->Rounding();
-    held->model.ForEachArray(
+  if (rank >= parts.holding.ranks()) return;
+  const auto build = [&](const std::vector<std::uint32_t>& leaves) {
+    const auto part = BuildPart<Real>(shapes, ObjectsOf(parts.tree, leaves), kernel);
+    for (const std::uint32_t leaf : leaves) parts.held[leaf] = part;
+    parts.rounding = part->kernel->Rounding();
+    part->model.ForEachArray(
         [&](const auto& array) { parts.model_bytes += array.size() * sizeof(array[0]); });
-  }
+  };
+  const std::vector<std::uint32_t> leaves = parts.holding.LeavesOf(rank);
+  if (!each_leaf) return build(leaves);
+  for (const std::uint32_t leaf : leaves) build({leaf});
 }
 
 }  // namespace
@@ -124,7 +141,7 @@ SceneParts<Real> PartsForAll(const World& world, const SceneChoice& choice,
       parts.copies += parts.tree.ObjectsIn(leaf).size();
     parts.holding = division.coupled ? Holding::Dealt(division.holders, parts.tree.leaves())
                                      : Divide(shapes, parts.tree, division, allowed);
-    Build(shapes, kernel, world.rank, parts);
+    Build(shapes, kernel, world.rank, division.coupled, parts);
     if (!division.coupled) parts.scene.shapes = {};
     return true;
   });
@@ -152,7 +169,7 @@ template <class Real>
 void Hold(const World& world, Holding holding, const std::string& kernel, SceneParts<Real>& parts) {
   parts.holding = std::move(holding);
   OnAllRanks(world, [&] {
-    Build(std::exchange(parts.scene.shapes, {}), kernel, world.rank, parts);
+    Build(std::exchange(parts.scene.shapes, {}), kernel, world.rank, false, parts);
     return true;
   });
 }

@@ -4,8 +4,10 @@
 #ifndef STIPPLE_RAYTRACER_PARTITION_SCENE_PARTS_H
 #define STIPPLE_RAYTRACER_PARTITION_SCENE_PARTS_H
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -18,9 +20,9 @@
 
 namespace stipple::raytracer {
 
-/// The objects of one leaf, ready for rays.
+/// Objects ready for rays, by one hierarchy: those of one leaf, or of all that a rank holds.
 template <class Real>
-struct LeafPart {
+struct HeldPart {
   Model<Real> model;
   std::vector<std::uint32_t> numbers;  // in the scene, by number in the model; ascending
   std::unique_ptr<Kernel<Real>> kernel;
@@ -31,13 +33,19 @@ struct SceneParts {
   Scene scene;  // without shapes, but those that Hold still needs
   ObjectTree tree;
   Holding holding;
-  std::vector<std::unique_ptr<LeafPart<Real>>> held;  // by leaf; null: others hold it
-  Real rounding = 0;                                  // of distances that kernels find
-  std::array<std::uint64_t, kShapeKinds> count{};     // objects of the whole scene, by kind
+  // By leaf; the same for all leaves of this rank, each object once, but while a pilot asks what
+  // each leaf costs. Null: others hold it.
+  std::vector<std::shared_ptr<HeldPart<Real>>> held;
+  Real rounding = 0;                               // of distances that kernels find
+  std::array<std::uint64_t, kShapeKinds> count{};  // objects of the whole scene, by kind
   std::uint64_t copies =
       0;  // objects in all leaves together; more than `objects`, as some lie in several
   std::uint64_t model_bytes = 0;  // of what this rank holds
   double load_s = 0, build_s = 0, build_cpu_s = 0;
+
+  bool HoldsAllAsOne() const {
+    return held.front() && std::ranges::adjacent_find(held, std::not_equal_to()) == held.end();
+  }
 };
 
 /// What is held by whom.
@@ -45,7 +53,7 @@ struct Division {
   int holders = 1;       // ranks 0 to holders - 1 hold objects
   double replicate = 0;  // share of the leaves that each holds; 0: one leaf each
   bool fill = false;     // instead: as many leaves each as fit into memory
-  bool coupled = false;  // several leaves for each rank, dealt in turn; Hold will change that
+  bool coupled = false;  // several leaves for each rank, each by itself; Hold will change that
 };
 
 /// The chosen scene, divided. Every rank calls it. Errors: StoppedTogether.
@@ -64,8 +72,7 @@ std::uint64_t WholeBytes(const SceneParts<Real>& parts);
 /// Bytes that this rank may take for objects. Every rank calls it.
 std::uint64_t AllowedBytes(const World& world, const SceneChoice& choice);
 
-/// Another division of a coupled scene's leaves: every rank builds what it lacks, and lets go of
-/// what others hold now.
+/// Another division of a coupled scene's leaves: every rank builds what it is to hold.
 template <class Real>
 void Hold(const World& world, Holding holding, const std::string& kernel, SceneParts<Real>& parts);
 

@@ -12,7 +12,8 @@ enum Flag : std::uint8_t {
   kFromEye = 4,  // point and number stand for the line
   kMet = 8,      // an object, so far
   kSmooth = 16,  // whose normals differ
-  kInMedia = 32
+  kInMedia = 32,
+  kSeenAhead = 64
 };
 
 // A component of a colour has less than 43 bits and a sign: see kBrightest.
@@ -69,7 +70,8 @@ std::uint8_t FlagsOf(const Traveller<Real>& ray) {
   const bool smooth = std::memcmp(&face, &shading, sizeof face) != 0;
   return static_cast<std::uint8_t>(
       (ray.to_light ? kToLight : 0) | (ray.first ? kFirst : 0) | (ray.eye_ray != 0 ? kFromEye : 0) |
-      (met ? kMet : 0) | (met && smooth ? kSmooth : 0) | (ray.media.count != 0 ? kInMedia : 0));
+      (met ? kMet : 0) | (met && smooth ? kSmooth : 0) | (ray.media.count != 0 ? kInMedia : 0) |
+      (ray.seen_ahead != 0 ? kSeenAhead : 0));
 }
 
 template <class Real>
@@ -110,6 +112,7 @@ void RayPackage<Real>::Add(const Traveller<Real>& ray) {
   to.Put(flags);
   to.Put(ray.point);
   to.Put(ray.seen);
+  if ((flags & kSeenAhead) != 0) to.Put(ray.seen_ahead);
   if ((flags & kFromEye) != 0) {
     to.Put(ray.eye_ray);
   } else {
@@ -149,6 +152,7 @@ PackageHeader Unpack(std::span<const std::byte> bytes, const RankTracer<Real>& t
     ray.first = (flags & kFirst) != 0;
     ray.point = from.Take<RasterPoint>();
     ray.seen = from.Take<std::uint16_t>();
+    if ((flags & kSeenAhead) != 0) ray.seen_ahead = from.Take<std::uint32_t>();
     ray.arrived = true;
     if ((flags & kFromEye) != 0) {
       ray.eye_ray = from.Take<std::uint16_t>();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "raytracer/render/travel.h"
 
+#include <limits>
+
 namespace stipple::raytracer {
 namespace {
 
@@ -16,7 +18,8 @@ class RankTracerIn final : public RankTracer<Real> {
         rank_(rank),
         eye_rays_(parts.scene.view, RasterOf(image, samples), samples),
         shader_(parts.scene, shading, parts.rounding),
-        leaf_work_(parts.tree.leaves()) {}
+        leaf_work_(parts.tree.leaves()),
+        holds_all_(parts.HoldsAllAsOne()) {}
 
   void Begin(RasterPoint point, std::vector<Traveller<Real>>& rays, RayResult& found) override {
     shader_.counts().eye_rays += eye_rays_.count();
@@ -57,26 +60,53 @@ class RankTracerIn final : public RankTracer<Real> {
  private:
   /// Where it goes next. `stopped`: something stands before its light.
   int Follow(Traveller<Real>& ray, std::span<const std::uint64_t> waiting, bool& stopped) {
+    if (holds_all_) return FollowHere(ray, waiting, stopped);
     const Ray<double> line = {Wide(ray.ray.origin), Wide(ray.ray.direction)};
     const std::uint64_t walk =
         parts_.tree.Along(line, static_cast<double>(shader_.rounding()), way_);
     shader_.counts().tests.box_tests += walk;
     if (ray.arrived) shader_.counts().repeated_tests += walk;
-    for (; ray.seen < way_.size(); ++ray.seen) {
+    for (; ray.seen < way_.size(); PassLeaf(ray)) {
       const LeafOnWay& next = way_[ray.seen];
       if (static_cast<double>(ray.t) < next.enter) break;
       if (!parts_.holding.Holds(rank_, next.leaf) ||
           (!ray.arrived && parts_.holding.OthersHaveFewer(next.leaf, waiting, rank_)))
         return parts_.holding.Next(std::span(way_).subspan(ray.seen), waiting, ray.point);
-      const std::uint64_t before = shader_.counts().Work();
-      if (ray.to_light)
-        stopped = parts_.held[next.leaf]->kernel->Occluded(ray.ray, ray.t, shader_.counts().tests);
-      else
-        Meet(*parts_.held[next.leaf], ray);
-      leaf_work_[next.leaf] += shader_.counts().Work() - before;
+      stopped = Test(next.leaf, ray);
       if (stopped) break;
+      SeeAhead(*parts_.held[next.leaf], ray);
     }
     return RankTracer<Real>::kEnded;
+  }
+
+  /// Where all objects are at hand a ray's way need not be known.
+  int FollowHere(Traveller<Real>& ray, std::span<const std::uint64_t> waiting, bool& stopped) {
+    const LeafOnWay any;
+    if (!ray.arrived && parts_.holding.OthersHaveFewer(any.leaf, waiting, rank_))
+      return parts_.holding.Next({&any, 1}, waiting, ray.point);
+    stopped = Test(any.leaf, ray);
+    return RankTracer<Real>::kEnded;
+  }
+
+  /// Tests what is held together with a leaf. Does it stand before the ray's light?
+  bool Test(std::uint32_t leaf, Traveller<Real>& ray) {
+    const HeldPart<Real>& part = *parts_.held[leaf];
+    const std::uint64_t before = shader_.counts().Work();
+    bool stopped = false;
+    if (ray.to_light)
+      stopped = part.kernel->Occluded(ray.ray, ray.t, shader_.counts().tests);
+    else
+      Meet(part, ray);
+    leaf_work_[leaf] += shader_.counts().Work() - before;
+    return stopped;
+  }
+
+  /// Leaves further on whose objects were tested together with those of the next.
+  void SeeAhead(const HeldPart<Real>& part, Traveller<Real>& ray) {
+    const std::size_t first = ray.seen + std::size_t{1};
+    const std::size_t most = std::numeric_limits<decltype(ray.seen_ahead)>::digits;
+    for (std::size_t i = 0; i < most && first + i < way_.size(); ++i)
+      if (parts_.held[way_[first + i].leaf].get() == &part) ray.seen_ahead |= 1U << i;
   }
 
   static Vec3 Wide(Vec<Real> v) {
@@ -84,15 +114,15 @@ class RankTracerIn final : public RankTracer<Real> {
   }
 
   /// Keeps what is nearer than what was met before.
-  void Meet(const LeafPart<Real>& leaf, Traveller<Real>& ray) {
-    const Hit<Real> hit = leaf.kernel->Intersect(ray.ray, shader_.counts().tests);
+  void Meet(const HeldPart<Real>& part, Traveller<Real>& ray) {
+    const Hit<Real> hit = part.kernel->Intersect(ray.ray, shader_.counts().tests);
     if (hit.object == kNoObject) return;
-    const std::uint32_t object = leaf.numbers[hit.object];
+    const std::uint32_t object = part.numbers[hit.object];
     if (hit.t > ray.t || (hit.t == ray.t && object >= ray.object)) return;
     ray.t = hit.t;
     ray.object = object;
-    ray.material = leaf.model.objects[hit.object].material;
-    ray.normals = NormalsAt(leaf.model, hit, shader_.PointAt(ray.ray, hit.t));
+    ray.material = part.model.objects[hit.object].material;
+    ray.normals = NormalsAt(part.model, hit, shader_.PointAt(ray.ray, hit.t));
   }
 
   /// Tells of rays that come of one that has ended.
@@ -159,6 +189,7 @@ class RankTracerIn final : public RankTracer<Real> {
   Shader<Real, kRules> shader_;
   std::vector<LeafOnWay> way_;
   std::vector<std::uint64_t> leaf_work_;
+  bool holds_all_;
 };
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rays where objects are divided: each is followed through the leaves that this rank holds, and
-// then goes on to another rank or has come to its end.
+// Rays where objects are divided: each is followed through all that this rank holds at once, and
+// then goes on to the rank of the next leaf on its way, or has come to its end.
 //
 // A ray carries all that anybody needs to go on with it: what it has met so far, with the normals
 // there, so that the rank where it ends can shade without holding the object; on its way to a
@@ -33,7 +33,8 @@ struct Traveller {
   RasterPoint point = 0;
   std::uint32_t object = kNoObject;  // the nearest so far
   std::uint32_t material = 0;        // of it
-  std::uint16_t seen = 0;            // leaves on its way that it has been through
+  std::uint16_t seen = 0;            // leaves on its way that it has been through, from the first
+  std::uint32_t seen_ahead = 0;      // bit i: leaf seen + 1 + i, too, with those of a rank before
   std::uint16_t eye_ray = 0;         // 1 + its number among those of its point; 0: it is none
   std::uint8_t depth = 1;
   bool to_light = false;
@@ -41,6 +42,17 @@ struct Traveller {
   bool arrived = false;  // in a message: another rank has looked for its way before
   PackedMedia media;
 };
+
+/// It has been through the leaf that comes next.
+template <class Real>
+void PassLeaf(Traveller<Real>& ray) {
+  bool seen = true;
+  while (seen) {
+    ++ray.seen;
+    seen = (ray.seen_ahead & 1U) != 0;
+    ray.seen_ahead >>= 1U;
+  }
+}
 
 /// What one rank does with rays.
 template <class Real>
@@ -62,7 +74,7 @@ class RankTracer {
                       std::vector<Traveller<Real>>& rays, RayResult& found) = 0;
 
   virtual const RayCounts& counts() const = 0;
-  /// Tests done in each leaf.
+  /// Tests done in each leaf; of leaves that are held together, in that which a ray came to first.
   virtual const std::vector<std::uint64_t>& leaf_work() const = 0;
 };
 

@@ -45,6 +45,7 @@ std::vector<Traveller<Real>> SomeRays() {
   reflected.throughput = third;
   reflected.depth = 64;
   reflected.seen = 65535;
+  reflected.seen_ahead = 0xfffffffe;
   reflected.media.inside = {1, 2, 3, 4, 5, 6, 7, 8};
   reflected.media.count = 8;
   Traveller<Real> met = reflected, flat = eye;
@@ -69,8 +70,10 @@ void ExpectSame(const Traveller<Real>& a, const Traveller<Real>& b) {
   EXPECT_EQ(a.throughput, b.throughput);
   EXPECT_EQ(a.t, b.t);
   EXPECT_EQ(a.object, b.object);
-  EXPECT_EQ(std::tuple(a.point, a.material, a.seen, a.eye_ray, a.depth, a.to_light, a.first),
-            std::tuple(b.point, b.material, b.seen, b.eye_ray, b.depth, b.to_light, b.first));
+  EXPECT_EQ(std::tuple(a.point, a.material, a.seen, a.seen_ahead, a.eye_ray, a.depth, a.to_light,
+                       a.first),
+            std::tuple(b.point, b.material, b.seen, b.seen_ahead, b.eye_ray, b.depth, b.to_light,
+                       b.first));
   EXPECT_EQ(a.normals.face, b.normals.face);
   EXPECT_EQ(a.normals.shading, b.normals.shading);
   EXPECT_EQ(a.media.count, b.media.count);
@@ -111,6 +114,8 @@ TEST(RayPackage, ARayTakesFewBytes) {
   EXPECT_EQ(bytes_of(rays[3]), 81U);  // to a light
   Traveller<double> reflected = rays[1];
   reflected.media.count = 0;
+  EXPECT_EQ(bytes_of(reflected), 68U);
+  reflected.seen_ahead = 0;
   EXPECT_EQ(bytes_of(reflected), 64U);
 }
 
