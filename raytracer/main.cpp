@@ -180,7 +180,9 @@ template <class Real>
 std::uint64_t BytesFor(const World& world, const SceneParts<Real>& parts, const Options& options) {
   const std::uint64_t allowed = AllowedBytes(world, ChoiceOf(options));
   if (options.replicate == 0) return allowed;
-  const double whole = static_cast<double>(WholeBytes(parts));
+  // As --objects partitioned counts: objects that reach into several leaves in each of them.
+  double whole = 0;
+  for (const LeafLoad& leaf : LoadsOf(parts)) whole += static_cast<double>(leaf.bytes);
   return std::min(allowed, static_cast<std::uint64_t>(options.replicate * whole));
 }
 

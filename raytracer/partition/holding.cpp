@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <functional>
 #include <numeric>
-#include <queue>
-#include <tuple>
 #include <utility>
 
 namespace stipple::raytracer {
@@ -57,8 +55,56 @@ std::optional<std::vector<int>> Deal(int ranks, std::span<const LeafLoad> loads,
 
 }  // namespace
 
+std::optional<Holding> Holding::HotAndRuns(int ranks, std::span<const LeafLoad> leaves,
+                                           std::uint64_t most_bytes, std::uint64_t most_hot) {
+  std::vector<std::uint32_t> hottest(leaves.size()), cold;
+  std::iota(hottest.begin(), hottest.end(), 0U);
+  std::ranges::stable_sort(hottest, std::ranges::greater(), [&](std::uint32_t leaf) {
+    return static_cast<double>(leaves[leaf].work) /
+           static_cast<double>(std::max<std::uint64_t>(leaves[leaf].bytes, 1));
+  });
+  Holding holding(ranks, static_cast<std::uint32_t>(leaves.size()));
+  std::uint64_t hot_bytes = 0;
+  for (const std::uint32_t leaf : hottest) {
+    if (hot_bytes + leaves[leaf].bytes > most_hot) {
+      cold.push_back(leaf);
+      continue;
+    }
+    hot_bytes += leaves[leaf].bytes;
+    for (int rank = 0; rank < ranks; ++rank) holding.Give(leaf, rank);
+  }
+  std::ranges::sort(cold);
+  for (int rank = 0; rank < ranks; ++rank) {
+    const std::size_t first =
+        static_cast<std::size_t>(rank) * cold.size() / static_cast<std::size_t>(ranks);
+    std::uint64_t bytes = hot_bytes;
+    for (std::size_t i = 0; i < cold.size(); ++i) {
+      const std::uint32_t leaf = cold[(first + i) % cold.size()];
+      bytes += leaves[leaf].bytes;
+      if (bytes > most_bytes) break;
+      holding.Give(leaf, rank);
+    }
+  }
+  for (const std::vector<int>& holders : holding.holders_)
+    if (holders.empty()) return std::nullopt;
+  return holding;
+}
+
 std::optional<Holding> Holding::Coupled(int ranks, std::span<const LeafLoad> leaves,
                                         std::uint64_t most_bytes) {
+  constexpr std::uint64_t kShares = 8;  // of the memory, for hot leaves: these are tried
+  std::optional<Holding> best;
+  for (std::uint64_t share = 0; share < kShares; ++share) {
+    std::optional<Holding> holding =
+        HotAndRuns(ranks, leaves, most_bytes, most_bytes / kShares * share);
+    if (holding && (!best || holding->AllAtOnce(leaves) < best->AllAtOnce(leaves)))
+      best = std::move(holding);
+  }
+  return best ? std::move(best) : DealtByWork(ranks, leaves, most_bytes);
+}
+
+std::optional<Holding> Holding::DealtByWork(int ranks, std::span<const LeafLoad> leaves,
+                                            std::uint64_t most_bytes) {
   std::vector<std::uint32_t> by_work(leaves.size());
   std::iota(by_work.begin(), by_work.end(), 0U);
   std::ranges::stable_sort(by_work, std::ranges::greater(),
@@ -66,61 +112,51 @@ std::optional<Holding> Holding::Coupled(int ranks, std::span<const LeafLoad> lea
   const std::optional<std::vector<int>> owners = Deal(ranks, leaves, by_work, most_bytes);
   if (!owners) return std::nullopt;
   Holding holding(ranks, static_cast<std::uint32_t>(leaves.size()));
-  std::vector<std::uint64_t> room(static_cast<std::size_t>(ranks), most_bytes);
-  for (std::size_t i = 0; i < by_work.size(); ++i) {
-    holding.Give(by_work[i], (*owners)[i]);
-    room[static_cast<std::size_t>((*owners)[i])] -= leaves[by_work[i]].bytes;
-  }
-  holding.Replicate(leaves, std::move(room));
+  for (std::size_t i = 0; i < by_work.size(); ++i) holding.Give(by_work[i], (*owners)[i]);
   return holding;
 }
 
-void Holding::Replicate(std::span<const LeafLoad> leaves, std::vector<std::uint64_t> room) {
-  double all = 0;
+// A pilot sees little of a leaf with little work: none is taken to have less than `least`.
+double Holding::AllAtOnce(std::span<const LeafLoad> leaves) const {
+  double all = 0, longest = 0;
   for (const LeafLoad& leaf : leaves) all += static_cast<double>(leaf.work);
-  // A pilot sees little of a leaf with little work: none is taken to have less than this.
   const double least = all / static_cast<double>(std::max<std::size_t>(leaves.size(), 1)) / 4;
-  struct Offer {
-    double gain;  // what one more holder takes from each of the others, per byte
-    std::uint32_t leaf;
-    bool operator<(const Offer& other) const {
-      return std::tie(gain, other.leaf) < std::tie(other.gain, leaf);
-    }
-  };
-  const auto offer = [&](std::uint32_t leaf) {
-    const auto holders = static_cast<double>(holders_[leaf].size());
-    const double work = std::max(static_cast<double>(leaves[leaf].work), least);
-    const auto bytes = static_cast<double>(std::max<std::uint64_t>(leaves[leaf].bytes, 1));
-    return Offer{work / (holders * (holders + 1) * bytes), leaf};
-  };
-  std::priority_queue<Offer> offers;
-  for (std::uint32_t leaf = 0; leaf < this->leaves(); ++leaf) offers.push(offer(leaf));
-  std::size_t next = 0;  // in turn, so that all fill up alike
-  while (!offers.empty()) {
-    const std::uint32_t leaf = offers.top().leaf;
-    offers.pop();
-    for (std::size_t tried = 0; tried < room.size(); ++tried) {
-      const std::size_t rank = next++ % room.size();
-      if (room[rank] < leaves[leaf].bytes || Holds(static_cast<int>(rank), leaf)) continue;
-      Give(leaf, static_cast<int>(rank));
-      room[rank] -= leaves[leaf].bytes;
-      offers.push(offer(leaf));
-      break;
-    }
-  }
+  for (std::uint32_t leaf = 0; leaf < this->leaves(); ++leaf)
+    longest += std::max(static_cast<double>(leaves[leaf].work), least) /
+               static_cast<double>(holders_[leaf].size());
+  return longest;
 }
 
+// Each leaf's work is divided among its holders, again and again a little more to those with less.
 double Holding::Balance(std::span<const LeafLoad> leaves) const {
-  std::vector<std::uint64_t> own(static_cast<std::size_t>(ranks_));
-  std::uint64_t all = 0;
+  constexpr int kRounds = 200;
+  std::vector<std::vector<double>> parts;
+  double all = 0;
   for (std::uint32_t leaf = 0; leaf < this->leaves(); ++leaf) {
-    all += leaves[leaf].work;
-    if (holders_[leaf].size() == 1)
-      own[static_cast<std::size_t>(holders_[leaf].front())] += leaves[leaf].work;
+    const auto work = static_cast<double>(leaves[leaf].work);
+    const std::size_t holders = holders_[leaf].size();
+    parts.emplace_back(holders, work / static_cast<double>(holders));
+    all += work;
   }
   if (all == 0) return 1;
-  const double mean = static_cast<double>(all) / ranks_;
-  return std::max(1.0, static_cast<double>(std::ranges::max(own)) / mean);
+  double most = 0;
+  for (int round = 0; round <= kRounds; ++round) {
+    std::vector<double> of_rank(static_cast<std::size_t>(ranks_));
+    for (std::uint32_t leaf = 0; leaf < this->leaves(); ++leaf)
+      for (std::size_t i = 0; i < parts[leaf].size(); ++i)
+        of_rank[static_cast<std::size_t>(holders_[leaf][i])] += parts[leaf][i];
+    most = std::ranges::max(of_rank);
+    for (std::uint32_t leaf = 0; leaf < this->leaves(); ++leaf) {
+      double sum = 0;
+      for (std::size_t i = 0; i < parts[leaf].size(); ++i) {
+        parts[leaf][i] /= of_rank[static_cast<std::size_t>(holders_[leaf][i])] / most + 0.1;
+        sum += parts[leaf][i];
+      }
+      for (double& part : parts[leaf])
+        part *= static_cast<double>(leaves[leaf].work) / std::max(sum, 1e-300);
+    }
+  }
+  return most / (all / ranks_);
 }
 
 std::vector<std::uint32_t> Holding::LeavesOf(int rank) const {

@@ -28,10 +28,10 @@ class Holding {
 
   /// Leaves dealt in turn, as many to each rank as they go.
   static Holding Dealt(int ranks, std::uint32_t leaves);
-  /// Each leaf on one rank, so that work is even; then, as long as there is room, one more holder
-  /// for the leaf of which that takes most work off each of the others, per byte: the dearest end
-  /// up on every rank, none has many where others have one. Nobody holds more than `most_bytes`.
-  /// Nothing if the leaves do not fit at all.
+  /// The leaves with most work per byte on every rank, and on each a run of neighbouring ones of
+  /// the rest, so that rays seldom travel; as many of the former as give all work most hands.
+  /// Nobody holds more than `most_bytes`. Where runs do not reach all leaves each is on one rank,
+  /// so that work is even. Nothing if they do not fit at all.
   static std::optional<Holding> Coupled(int ranks, std::span<const LeafLoad> leaves,
                                         std::uint64_t most_bytes);
 
@@ -39,8 +39,8 @@ class Holding {
     return holds_[leaf * static_cast<std::size_t>(ranks_) + static_cast<std::size_t>(rank)] != 0;
   }
   std::vector<std::uint32_t> LeavesOf(int rank) const;
-  /// The work of the rank with most over the mean, if work in leaves that several hold goes to who
-  /// has least.
+  /// The work of the rank with most over the mean, if work in leaves that several hold is divided
+  /// as evenly as can be.
   double Balance(std::span<const LeafLoad> leaves) const;
   int ranks() const { return ranks_; }
   std::uint32_t leaves() const { return static_cast<std::uint32_t>(holders_.size()); }
@@ -64,7 +64,12 @@ class Holding {
  private:
   Holding(int ranks, std::uint32_t leaves);
   void Give(std::uint32_t leaf, int rank);
-  void Replicate(std::span<const LeafLoad> leaves, std::vector<std::uint64_t> room);
+  /// What the leaves' work would take one after the other, each done by all of its holders.
+  double AllAtOnce(std::span<const LeafLoad> leaves) const;
+  static std::optional<Holding> HotAndRuns(int ranks, std::span<const LeafLoad> leaves,
+                                           std::uint64_t most_bytes, std::uint64_t most_hot);
+  static std::optional<Holding> DealtByWork(int ranks, std::span<const LeafLoad> leaves,
+                                            std::uint64_t most_bytes);
 
   int ranks_;
   std::vector<std::uint8_t> holds_;        // by leaf and rank

@@ -159,13 +159,6 @@ std::vector<LeafLoad> LoadsOf(const SceneParts<Real>& parts) {
 }
 
 template <class Real>
-std::uint64_t WholeBytes(const SceneParts<Real>& parts) {
-  std::vector<std::uint32_t> all(parts.scene.shapes.objects.size());
-  std::iota(all.begin(), all.end(), 0U);
-  return BytesToBuild(parts.scene.shapes, all);
-}
-
-template <class Real>
 void Hold(const World& world, Holding holding, const std::string& kernel, SceneParts<Real>& parts) {
   parts.holding = std::move(holding);
   OnAllRanks(world, [&] {
@@ -181,8 +174,6 @@ template SceneParts<double> PartsForAll(const World&, const SceneChoice&, const 
 
 template std::vector<LeafLoad> LoadsOf(const SceneParts<float>&);
 template std::vector<LeafLoad> LoadsOf(const SceneParts<double>&);
-template std::uint64_t WholeBytes(const SceneParts<float>&);
-template std::uint64_t WholeBytes(const SceneParts<double>&);
 template void Hold(const World&, Holding, const std::string&, SceneParts<float>&);
 template void Hold(const World&, Holding, const std::string&, SceneParts<double>&);
 

@@ -65,10 +65,6 @@ SceneParts<Real> PartsForAll(const World& world, const SceneChoice& choice,
 template <class Real>
 std::vector<LeafLoad> LoadsOf(const SceneParts<Real>& parts);
 
-/// What the whole scene takes, each object once. Before Hold.
-template <class Real>
-std::uint64_t WholeBytes(const SceneParts<Real>& parts);
-
 /// Bytes that this rank may take for objects. Every rank calls it.
 std::uint64_t AllowedBytes(const World& world, const SceneChoice& choice);
 
