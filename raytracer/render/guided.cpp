@@ -3,6 +3,10 @@
 // they cost is added up everywhere, and from it every rank knows all bundles. From then on a rank
 // needs nobody to get work. Ranks on rank 0's node put what they find where rank 0 will read it;
 // one on another node sends once: which bundles it had, and what it found.
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cstdint>
 #include <numeric>
 
 #include "raytracer/render/machine.h"
@@ -62,6 +66,22 @@ class Work {
   bool pilot_;
 };
 
+/// Gives the block its pages. Every tile that is traced writes to pages that other tiles have, too:
+/// each rank would stop for each of them. Ranks begin in different places, so each page is cleared
+/// once. Where the system cannot (Linux before 5.14) they stop.
+void Populate(std::span<std::byte> block, const Node& node) {
+  const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+  const auto begin = reinterpret_cast<std::uintptr_t>(block.data()) / page * page;
+  const auto end = reinterpret_cast<std::uintptr_t>(block.data() + block.size());
+  const auto middle = begin + (end - begin) / page * static_cast<std::uintptr_t>(node.rank()) /
+                                  static_cast<std::uintptr_t>(node.size()) * page;
+  const auto populate = [](std::uintptr_t from, std::uintptr_t to) {
+    if (from < to) madvise(reinterpret_cast<void*>(from), to - from, MADV_POPULATE_WRITE);
+  };
+  populate(middle, end);
+  populate(begin, middle);
+}
+
 /// The raster of a round as far as this rank can reach it.
 class Reached {
  public:
@@ -71,6 +91,7 @@ class Reached {
       rendered_.shared = NodeMemory(node, points * sizeof(RayResult));
     const std::span<std::byte> block = rendered_.shared.block();
     if (!block.empty()) {
+      Populate(block, node);
       points_ = {reinterpret_cast<RayResult*>(block.data()), points};
       sharing_ = node.size();
       if (world.rank == 0) rendered_.points = points_;

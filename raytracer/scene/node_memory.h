@@ -20,6 +20,7 @@ class Node {
   Node& operator=(const Node&) = delete;
 
   MPI_Comm comm() const { return comm_; }
+  int rank() const { return rank_; }
   int size() const { return size_; }
   bool leads() const { return rank_ == 0; }
   /// Is it true on every rank of the node? All of them ask.
