@@ -95,7 +95,9 @@ Figure RatioFigure(std::span<const MeasuredSetting> settings) {
       }
       chart.lines.push_back(std::move(line));
     }
-    chart.x_ticks = {{0, "0"}, {0.25, "4/16"}, {0.5, "8/16"}, {0.75, "12/16"}, {1, "all"}};
+    // Room for the names before 0.
+    chart.x_ticks = {{-0.05, ""},   {0, "0"},        {0.25, "4/16"},
+                     {0.5, "8/16"}, {0.75, "12/16"}, {1, "all"}};
     chart.x_title = "share of the objects on each node";
     chart.y_title = "time / replicated time";
     chart.names_first = true;

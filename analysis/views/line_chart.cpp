@@ -170,9 +170,7 @@ Layer Names(const Plane& plane) {
   std::vector<std::pair<double, const ChartLine*>> ends;
   for (const ChartLine& line : plane.chart.lines)
     if (!line.points.empty() && !line.name.empty())
-      ends.emplace_back(
-          first ? plane.YOf(line.points.front().y) - kLine * 0.7 : plane.YOf(line.points.back().y),
-          &line);
+      ends.emplace_back(plane.YOf(first ? line.points.front().y : line.points.back().y), &line);
   std::ranges::stable_sort(ends, {}, [](const auto& end) { return end.first; });
   for (std::size_t i = 1; i < ends.size(); ++i)
     ends[i].first = std::max(ends[i].first, ends[i - 1].first + kLine);
@@ -183,10 +181,13 @@ Layer Names(const Plane& plane) {
   }
   for (const auto& [y, line] : ends)
     layer.shapes.emplace_back(
-        TextShape{first ? plane.XOf(line->points.front().x) + 2 : plane.right + kNameGap,
+        TextShape{first ? plane.XOf(line->points.front().x) - kNameGap : plane.right + kNameGap,
                   y,
                   line->name,
-                  {.size = kText, .colour = ColourOf(*line).text, .bold = true}});
+                  {.size = kText,
+                   .colour = ColourOf(*line).text,
+                   .bold = true,
+                   .anchor = first ? Anchor::kEnd : Anchor::kStart}});
   return layer;
 }
 

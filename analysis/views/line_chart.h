@@ -43,7 +43,7 @@ struct LineChart {
   std::vector<ChartLine> lines{};
   std::vector<ChartRule> thresholds{};  // values
   std::vector<ChartRule> moments{};     // of the x axis
-  bool names_first = false;          // names stand above the lines' first points, as the ends meet
+  bool names_first = false;          // names stand before the lines' first points, as the ends meet
   double width = 640, height = 300;  // pixels
 };
 
