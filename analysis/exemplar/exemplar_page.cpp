@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "analysis/exemplar/chart_scene.h"
-#include "analysis/report/html_style.h"
+#include "analysis/exemplar/page_frame.h"
 #include "analysis/views/svg.h"
 #include "analysis/views/svg_write.h"
 #include "analysis/views/table_access.h"
@@ -84,16 +84,9 @@ std::string ChartSection(const MeasuredChart& chart) {
 }  // namespace
 
 std::string ExemplarPage(const ExemplarInput& input) {
-  const std::string title = EscapeMarkup(input.title);
-  std::string page =
-      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<title>";
-  page += title + "</title>\n<style>" + PageStyle(false);
-  page += kChartStyle;
-  page += "</style></head><body>\n<header><h1>" + title + "</h1>\n<p class=\"facts\">" +
-          EscapeMarkup(input.lead) + "</p></header><main>\n";
-  for (const MeasuredChart& chart : input.charts) page += ChartSection(chart);
-  return page + "</main>\n</body></html>\n";
+  std::string sections;
+  for (const MeasuredChart& chart : input.charts) sections += ChartSection(chart);
+  return PageOf(input.title, input.lead, kChartStyle, sections);
 }
 
 }  // namespace stipple

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "analysis/exemplar/figure_scene.h"
-#include "analysis/report/html_style.h"
+#include "analysis/exemplar/page_frame.h"
 #include "analysis/views/svg.h"
 #include "analysis/views/svg_write.h"
 #include "analysis/views/table_access.h"
@@ -226,17 +226,10 @@ std::string Overview(const VerdictInput& input) {
 }  // namespace
 
 std::string VerdictPage(const VerdictInput& input) {
-  const std::string title = EscapeMarkup(input.title);
-  std::string page =
-      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<title>";
-  page += title + "</title>\n<style>" + PageStyle(false);
-  page += kVerdictStyle;
-  page += "</style></head><body>\n<header><h1>" + title + "</h1>\n<p class=\"facts\">" +
-          EscapeMarkup(input.lead) + "</p></header><main>\n";
-  if (input.results.size() > 1) page += Overview(input);
-  for (const PaperResult& result : input.results) page += Section(result);
-  return page + "</main>\n</body></html>\n";
+  std::string sections;
+  if (input.results.size() > 1) sections += Overview(input);
+  for (const PaperResult& result : input.results) sections += Section(result);
+  return PageOf(input.title, input.lead, kVerdictStyle, sections);
 }
 
 }  // namespace stipple

@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include <cstdint>
-#include <numeric>
 
 #include "raytracer/render/machine.h"
 #include "raytracer/render/marks.h"
