@@ -171,19 +171,8 @@ void RenderReplicated(const World& world, const Options& options) {
   report.counts = rendered.counts;
   report.messages = rendered.messages;
   Finish(world, rendered.points, scene.view.resolution,
-         {shared.model.objects.size(), facts.model_bytes, 0, 0, 0, {}}, report, shared.kept_in,
+         {shared.model.objects.size(), facts.model_bytes, 0, 0, {}, {}}, report, shared.kept_in,
          options);
-}
-
-/// What a rank may hold of a coupled scene.
-template <class Real>
-std::uint64_t BytesFor(const World& world, const SceneParts<Real>& parts, const Options& options) {
-  const std::uint64_t allowed = AllowedBytes(world, ChoiceOf(options));
-  if (options.replicate == 0) return allowed;
-  // As --objects partitioned counts: objects that reach into several leaves in each of them.
-  double whole = 0;
-  for (const LeafLoad& leaf : LoadsOf(parts)) whole += static_cast<double>(leaf.bytes);
-  return std::min(allowed, static_cast<std::uint64_t>(options.replicate * whole));
 }
 
 /// Objects divided among all ranks, but for the host. `fill`: as much on each as fits.
@@ -202,23 +191,22 @@ void RenderPartitioned(const World& world, bool fill, const Options& options) {
   const ImageSize image = parts.scene.view.resolution;
   const ShadingChoice shading{DepthFor(facts, static_cast<int>(options.max_depth)),
                               options.min_contribution};
-  double predicted = 0;
+  std::optional<Forecast> forecast;
   if (coupled) {
-    predicted = Couple(world, shading, options.kernel, BytesFor(world, parts, options), parts);
+    forecast = Couple(world, shading, options.kernel, parts);
     facts = FactsOf(world, parts);
   }
   const auto tracer = world.rank < division.holders
                           ? MakeRankTracer(parts, world.rank, shading, image, options.samples)
                           : nullptr;
   Stopwatch watch;
-  const DividedChoice choice{options.partition,
-                             PointsOf(image, options),
-                             division.holders,
-                             static_cast<std::size_t>(options.package),
-                             coupled && host
-                                 ? HomesOf(parts, PointsOf(image, options), image, options.samples)
-                                 : std::vector<std::uint32_t>(),
-                             &parts.holding};
+  const DividedChoice choice{
+      options.partition,
+      PointsOf(image, options),
+      division.holders,
+      static_cast<std::size_t>(options.package),
+      coupled && !tracer ? WaysOf(parts, PointsOf(image, options), image, options.samples) : Ways(),
+      &parts.holding};
   std::optional<WorkMeter> meter;
   if (tracer) meter.emplace(tracer->counts());
   const DividedRender divided = RenderDivided(world, tracer.get(), choice);
@@ -228,7 +216,7 @@ void RenderPartitioned(const World& world, bool fill, const Options& options) {
   report.messages = divided.rendered.messages;
   report.travel = divided.travel;
   Finish(world, divided.rendered.points, image,
-         {facts.Objects(), facts.model_bytes, facts.parts, facts.copies, predicted, {}}, report, "",
+         {facts.Objects(), facts.model_bytes, facts.parts, facts.copies, forecast, {}}, report, "",
          options);
 }
 

@@ -246,14 +246,9 @@ template SceneFacts FactsOf(const Scene&, Model<long double>&);
 template <class Real>
 SceneFacts FactsOf(const World& world, SceneParts<Real>& parts) {
   SceneFacts facts;
-  const HeldPart<Real>* last = nullptr;  // each leaf has its own, or all have the same
-  for (const auto& part : parts.held) {
-    if (!part || part.get() == last) continue;
-    last = part.get();
-    const SceneFacts more = FactsOf(parts.scene, part->model);
-    facts.reach = std::max(facts.reach, more.reach);
-    facts.smallest = std::min(facts.smallest, more.smallest);
-  }
+  const SceneFacts here = FactsOf(parts.scene, parts.here->model);
+  facts.reach = here.reach;
+  facts.smallest = here.smallest;
   facts.model_bytes = parts.model_bytes;
   MPI_Allreduce(MPI_IN_PLACE, &facts.reach, 1, MPI_DOUBLE, MPI_MAX, world.comm);
   MPI_Allreduce(MPI_IN_PLACE, &facts.smallest, 1, MPI_DOUBLE, MPI_MIN, world.comm);

@@ -141,7 +141,10 @@ std::string StatsJson(const RunReport& report) {
     json["packages_sent"] = travel.packages_sent;
     json["rays_per_package"] = RaysPerPackage(travel);
     json["most_rays_held"] = travel.most_held;
-    if (report.predicted_balance > 0) json["predicted_balance"] = report.predicted_balance;
+    if (report.forecast) {
+      json["predicted_balance"] = report.forecast->balance;
+      json["predicted_journeys"] = report.forecast->journeys;
+    }
   }
   const LossBound loss = LossIn(report);
   json["lost_mean"] = loss.mean;
@@ -174,8 +177,9 @@ std::string Summary(const RunReport& report) {
   if (tracing > 1 && work > 0) {
     text += fmt::format("  work of the busiest tracing rank over the mean: {:.2f}",
                         static_cast<double>(most) * tracing / work);
-    if (report.predicted_balance > 0)
-      text += fmt::format("; {:.2f} was foretold by the pilot", report.predicted_balance);
+    if (report.forecast)
+      text += fmt::format("; the pilot foretold {:.2f}, and {:.2f} journeys per ray",
+                          report.forecast->balance, report.forecast->journeys);
     text += "\n";
   }
   return text;

@@ -30,8 +30,8 @@ struct RunReport {
       0;  // of the shapes and their hierarchy, Model's arrays; the most on a rank
   // Of a divided scene; else 0.
   int parts = 0;
-  std::uint64_t copies = 0;      // objects in all parts together
-  double predicted_balance = 0;  // of a coupled scene: work of the busiest rank over the mean
+  std::uint64_t copies = 0;          // objects in all parts together
+  std::optional<Forecast> forecast;  // of a coupled scene
   std::vector<RankReport> ranks;
 };
 

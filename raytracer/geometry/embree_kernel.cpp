@@ -116,10 +116,14 @@ class EmbreeKernel final : public Kernel<Real> {
     rtcSetDeviceErrorFunction(device_.get(), nullptr, nullptr);
   }
 
-  [[gnu::noinline]] Hit<Real> Intersect(const Ray<Real>& ray, TestCounts&) const override {
+  [[gnu::noinline]] Hit<Real> IntersectWithin(const Ray<Real>& ray, Real farthest,
+                                              TestCounts&) const override {
     Context<Real> context(ray);
     RTCRayHit found;
-    found.ray = EmbreeRay(ray, std::numeric_limits<Real>::infinity());
+    constexpr float kForever = std::numeric_limits<float>::infinity();
+    // What is exactly so far counts, too.
+    const float reach = std::nextafter(static_cast<float>(farthest), kForever);
+    found.ray = EmbreeRay(ray, static_cast<Real>(reach));
     found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     found.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(scene_.get(), &context.embree, &found);

@@ -32,7 +32,12 @@ class Kernel {
 
   /// Nearest object along the ray. Of objects at exactly the same distance the one with the lower
   /// number is hit, so that the answer does not depend on the order of traversal.
-  virtual Hit<Real> Intersect(const Ray<Real>& ray, TestCounts& tests) const = 0;
+  Hit<Real> Intersect(const Ray<Real>& ray, TestCounts& tests) const {
+    return IntersectWithin(ray, std::numeric_limits<Real>::infinity(), tests);
+  }
+  /// The same, of objects that are not farther than `farthest`.
+  virtual Hit<Real> IntersectWithin(const Ray<Real>& ray, Real farthest,
+                                    TestCounts& tests) const = 0;
 
   /// Is any object nearer than max_t?
   virtual bool Occluded(const Ray<Real>& ray, Real max_t, TestCounts& tests) const = 0;

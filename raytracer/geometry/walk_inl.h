@@ -76,8 +76,9 @@ class Walk {
   Walk(const Model<Real>& model, const Ray<Real>& ray)
       : model_(model), ray_(ray), box_ray_(ReadyForBoxes(model.frame[0], ray)) {}
 
-  HWY_INLINE Hit<Real> Nearest(TestCounts& counts) {
+  HWY_INLINE Hit<Real> Nearest(Real farthest, TestCounts& counts) {
     Hit<Real> best;
+    best.t = farthest;
     box_tests_ = 1;
     if (box_ray_.MeetsScene()) Visit(best);
     counts.box_tests += box_tests_;
@@ -229,9 +230,10 @@ class BvhKernel final : public Kernel<typename Tests::Number> {
 
   explicit BvhKernel(const Model<Real>& model) : model_(model) {}
 
-  [[gnu::noinline]] Hit<Real> Intersect(const Ray<Real>& ray, TestCounts& tests) const override {
+  [[gnu::noinline]] Hit<Real> IntersectWithin(const Ray<Real>& ray, Real farthest,
+                                              TestCounts& tests) const override {
     if (model_.frame.empty()) return {};
-    return Walk<Tests>(model_, ray).Nearest(tests);
+    return Walk<Tests>(model_, ray).Nearest(farthest, tests);
   }
 
   [[gnu::noinline]] bool Occluded(const Ray<Real>& ray, Real max_t,

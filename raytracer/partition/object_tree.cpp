@@ -9,9 +9,6 @@
 namespace stipple::raytracer {
 namespace {
 
-// Of a tree that halves 2^32 leaves.
-constexpr int kMostPlanesAbove = 32;
-
 double Component(const Vec3& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
 double& Component(Vec3& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
@@ -84,20 +81,19 @@ std::int32_t ObjectTree::Split(std::span<const Bounds> boxes, std::vector<std::u
   return plane;
 }
 
-/// The part of a ray that `now` describes, at a plane: `now` becomes the first side that it is on.
-/// True if it is on the other as well, which `later` then describes.
-inline bool ObjectTree::Cross(const Plane& plane, const Ray<double>& ray, double margin,
-                              double slack, Part& now, Part& later) {
-  const double distance = plane.at - Component(ray.origin, plane.axis);
-  const double direction = Component(ray.direction, plane.axis);
+/// At a plane `now` becomes the first side that the ray is on. True if it is on the other as well,
+/// which `later` then describes.
+inline bool LeafWay::Cross(const ObjectTree::Plane& plane, Part& now, Part& later) const {
+  const double distance = plane.at - Component(ray_.origin, plane.axis);
+  const double direction = Component(ray_.direction, plane.axis);
   const bool from_below = direction > 0 || (direction == 0 && distance > 0);
   const std::int32_t near = from_below ? plane.below : plane.above;
   const std::int32_t far = from_below ? plane.above : plane.below;
   double crosses = now.from, around = std::numeric_limits<double>::infinity();
-  if (std::abs(direction) > margin) {
+  if (std::abs(direction) > margin_) {
     crosses = distance / direction;
-    around = slack / std::abs(direction) + margin * std::abs(crosses);
-  } else if (std::abs(distance) > 4 * slack) {  // along the plane
+    around = slack_ / std::abs(direction) + margin_ * std::abs(crosses);
+  } else if (std::abs(distance) > 4 * slack_) {  // along the plane
     now.link = distance > 0 ? plane.below : plane.above;
     return false;
   }
@@ -109,39 +105,43 @@ inline bool ObjectTree::Cross(const Plane& plane, const Ray<double>& ray, double
     now.link = near;
     return false;
   }
-  later = {far, std::max(now.from, crosses - around), now.to};
-  now = {near, now.from, std::min(now.to, crosses + around)};
+  const double from = std::max(now.from, crosses - around);
+  later = {far, from, now.to, now.after};
+  now = {near, now.from, std::min(now.to, crosses + around), std::min(from, now.after)};
   return true;
 }
 
-std::uint64_t ObjectTree::Along(const Ray<double>& ray, double rounding,
-                                std::vector<LeafOnWay>& way) const {
-  way.clear();
-  if (!(scene_.low.x <= scene_.high.x)) return 0;
+void LeafWay::Begin(const ObjectTree& tree, const Ray<double>& ray, double rounding) {
+  tree_ = &tree;
+  ray_ = ray;
+  leaves_.clear();
+  count_ = 0;
+  planes_ = 0;
+  const Bounds& scene = tree.scene_;
+  if (!(scene.low.x <= scene.high.x)) return;
   constexpr double kForever = std::numeric_limits<double>::infinity();
-  const double margin = 64 * rounding;
-  if (std::isinf(EnterBounds(scene_, SlabRay(ray, 1 + margin), kForever))) return 1;
-  const double extent = MaxNorm(scene_.low) + MaxNorm(scene_.high) + MaxNorm(ray.origin);
-  const double slack = margin * extent;
-  Part waiting[kMostPlanesAbove];
-  int count = 0;
-  std::uint64_t planes = 0;
-  Part now{root_, 0, kForever};
-  for (;;) {
-    if (now.link >= 0) {
-      ++planes;
-      const Plane& plane = planes_[static_cast<std::size_t>(now.link)];
-      if (Cross(plane, ray, margin, slack, now, waiting[count])) ++count;
-      continue;
-    }
-    way.push_back({static_cast<std::uint32_t>(~now.link), std::max(0.0, now.from - slack)});
-    if (count == 0) break;
-    now = waiting[--count];
+  margin_ = 64 * rounding;
+  if (std::isinf(EnterBounds(scene, SlabRay(ray, 1 + margin_), kForever))) return;
+  slack_ = margin_ * (MaxNorm(scene.low) + MaxNorm(scene.high) + MaxNorm(ray.origin));
+  waiting_[0] = {tree.root_, 0, kForever, kForever};
+  count_ = 1;
+}
+
+void LeafWay::FindNext() {
+  Part now = waiting_[static_cast<std::size_t>(--count_)];
+  while (now.link >= 0) {
+    ++planes_;
+    const ObjectTree::Plane& plane = tree_->planes_[static_cast<std::size_t>(now.link)];
+    if (Cross(plane, now, waiting_[static_cast<std::size_t>(count_)])) ++count_;
   }
-  // The margins of two neighbours overlap; whoever stops at a leaf has seen all that is nearer.
-  for (std::size_t i = way.size() - 1; i > 0; --i)
-    way[i - 1].enter = std::min(way[i - 1].enter, way[i].enter);
-  return 1 + (planes + 1) / 2;
+  // The margins of two neighbours overlap: whoever stops at a leaf has seen all that is nearer.
+  const double enter = std::min(now.from, now.after) - slack_;
+  leaves_.push_back({static_cast<std::uint32_t>(~now.link), std::max(0.0, enter)});
+}
+
+bool LeafWay::Reach(std::size_t count) {
+  while (leaves_.size() < count && count_ > 0) FindNext();
+  return leaves_.size() >= count;
 }
 
 }  // namespace stipple::raytracer

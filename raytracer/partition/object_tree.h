@@ -9,6 +9,8 @@
 #ifndef STIPPLE_RAYTRACER_PARTITION_OBJECT_TREE_H
 #define STIPPLE_RAYTRACER_PARTITION_OBJECT_TREE_H
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -22,6 +24,8 @@ struct LeafOnWay {
   std::uint32_t leaf = 0;
   double enter = 0;
 };
+
+class LeafWay;
 
 class ObjectTree {
  public:
@@ -37,12 +41,6 @@ class ObjectTree {
   /// The leaf's part of the scene's box.
   const Bounds& CellOf(std::uint32_t leaf) const { return cells_[leaf]; }
 
-  /// Replaces `way` by the leaves that the ray meets, the nearest first; by none if it misses the
-  /// scene. An object that the ray meets in a leaf's cell lies in one of them, whatever the
-  /// rounding; `rounding`: relative error of the ray's arithmetic. Returns what it took, in tests
-  /// of a box: two planes, with their divisions, count as one.
-  std::uint64_t Along(const Ray<double>& ray, double rounding, std::vector<LeafOnWay>& way) const;
-
  private:
   /// A plane: leaves and planes below it and above. Links: >= 0 a plane, else ~leaf.
   struct Plane {
@@ -51,14 +49,7 @@ class ObjectTree {
     std::int32_t below, above;
   };
 
-  /// What is still to be looked at of a ray: its distances `from` to `to`, below a link.
-  struct Part {
-    std::int32_t link;
-    double from, to;
-  };
-
-  static bool Cross(const Plane& plane, const Ray<double>& ray, double margin, double slack,
-                    Part& now, Part& later);
+  friend LeafWay;
   std::int32_t Split(std::span<const Bounds> boxes, std::vector<std::uint32_t> numbers,
                      const Bounds& cell, std::uint32_t leaves);
 
@@ -67,6 +58,44 @@ class ObjectTree {
   std::int32_t root_ = ~0;
   std::vector<std::vector<std::uint32_t>> objects_;  // by leaf
   std::vector<Bounds> cells_;
+};
+
+/// The leaves that a ray meets, the nearest first, found one after another as they are asked for:
+/// most rays end soon. An object that the ray meets in a leaf's cell lies in one of them, whatever
+/// the rounding.
+class LeafWay {
+ public:
+  /// Of a ray; `rounding`: relative error of its arithmetic. Both must outlive the questions.
+  void Begin(const ObjectTree& tree, const Ray<double>& ray, double rounding);
+
+  /// Finds leaves until so many are known. False if the ray meets fewer.
+  bool Reach(std::size_t count);
+  /// Those that were found.
+  std::span<const LeafOnWay> leaves() const { return leaves_; }
+  /// What finding them took, in tests of a box: two planes, with their divisions, count as one.
+  std::uint64_t Work() const { return 1 + (planes_ + 1) / 2; }
+
+ private:
+  /// What is still to be looked at: the ray's distances `from` to `to`, below a link. `after`: the
+  /// least `from` of what comes after it.
+  struct Part {
+    std::int32_t link;
+    double from, to, after;
+  };
+
+  bool Cross(const ObjectTree::Plane& plane, Part& now, Part& later) const;
+  void FindNext();
+
+  // Of a tree that halves 2^32 leaves.
+  static constexpr int kMostPlanesAbove = 32;
+
+  const ObjectTree* tree_ = nullptr;
+  Ray<double> ray_{};
+  double margin_ = 0, slack_ = 0;
+  std::array<Part, kMostPlanesAbove + 1> waiting_;  // the next one last
+  int count_ = 0;
+  std::uint64_t planes_ = 0;
+  std::vector<LeafOnWay> leaves_;
 };
 
 }  // namespace stipple::raytracer

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "raytracer/partition/coupling.h"
 #include "raytracer/render/marks.h"
 #include "raytracer/scene/memory_need.h"
 #include "raytracer/scene/node_memory.h"
@@ -48,12 +49,17 @@ std::vector<std::uint32_t> ObjectsOf(const ObjectTree& tree,
   return numbers;
 }
 
-/// Who holds what: as chosen, else as many leaves each as fit.
-Holding Divide(const Shapes& shapes, const ObjectTree& tree, const Division& division,
-               std::uint64_t allowed) {
+std::vector<std::uint64_t> LeafBytes(const Shapes& shapes, const ObjectTree& tree) {
   std::vector<std::uint64_t> bytes;
   for (std::uint32_t leaf = 0; leaf < tree.leaves(); ++leaf)
     bytes.push_back(BytesToBuild(shapes, tree.ObjectsIn(leaf)));
+  return bytes;
+}
+
+/// Who holds what: as chosen, else as many leaves each as fit.
+Holding Divide(const Shapes& shapes, const ObjectTree& tree, const Division& division,
+               std::uint64_t allowed) {
+  const std::vector<std::uint64_t> bytes = LeafBytes(shapes, tree);
   const int ranks = division.holders;
   int each = 1;
   if (division.replicate > 0)
@@ -70,15 +76,26 @@ Holding Divide(const Shapes& shapes, const ObjectTree& tree, const Division& div
   return holding;
 }
 
-template <class Real>
-std::shared_ptr<HeldPart<Real>> BuildPart(const Shapes& shapes,
-                                          const std::vector<std::uint32_t>& numbers,
-                                          const std::string& kernel) {
-  auto part = std::make_shared<HeldPart<Real>>();
-  part->model = BuildModel<Real>(SubsetOf(shapes, numbers), HierarchyFor(kernel));
-  part->numbers = numbers;
-  part->kernel = MakeKernel(kernel, part->model);
-  return part;
+/// What a rank may hold of a coupled scene. A share is counted as --objects partitioned counts it:
+/// objects that reach into several leaves in each of them.
+std::uint64_t MostBytesCoupled(const std::vector<std::uint64_t>& leaf_bytes, double replicate,
+                               std::uint64_t allowed) {
+  if (replicate == 0) return allowed;
+  const auto whole =
+      static_cast<double>(std::reduce(leaf_bytes.begin(), leaf_bytes.end(), std::uint64_t{0}));
+  return std::min(allowed, static_cast<std::uint64_t>(replicate * whole));
+}
+
+/// As long as no pilot has told what rays want.
+Holding CoupledAtFirst(const std::vector<std::uint64_t>& leaf_bytes, int ranks,
+                       std::uint64_t most_bytes) {
+  const Coupling coupling(ranks, leaf_bytes, {}, most_bytes);
+  RequireMemory(coupling.LeastBytes(), most_bytes,
+                fmt::format("divided among {} ranks its objects take", ranks));
+  Holding holding(ranks, static_cast<std::uint32_t>(leaf_bytes.size()));
+  for (int rank = 0; rank < ranks; ++rank)
+    for (const std::uint32_t leaf : coupling.LeavesOf(rank)) holding.Give(leaf, rank);
+  return holding;
 }
 
 /// Leaves of a coupled scene: on few ranks several for each, so that work can be dealt evenly. On
@@ -88,26 +105,19 @@ int CoupledLeaves(int ranks) {
   return std::max(ranks, std::min(kOnEach * ranks, kEnough));
 }
 
-/// `each_leaf`: by a hierarchy of its own.
 template <class Real>
-void Build(const Shapes& shapes, const std::string& kernel, int rank, bool each_leaf,
-           SceneParts<Real>& parts) {
-  parts.held.assign(parts.tree.leaves(), nullptr);
+void Build(const Shapes& shapes, const std::string& kernel, int rank, SceneParts<Real>& parts) {
+  parts.here = std::make_unique<HeldPart<Real>>();
   parts.model_bytes = 0;
   if (rank >= parts.holding.ranks()) return;
-  const auto build = [&](const std::vector<std::uint32_t>& leaves) {
-    const auto part = BuildPart<Real>(shapes, ObjectsOf(parts.tree, leaves), kernel);
-    for (const std::uint32_t leaf : leaves) parts.held[leaf] = part;
-    parts.rounding = part->kernel->Rounding();
-    part->model.ForEachArray(
-        [&](const auto& array) { parts.model_bytes += array.size() * sizeof(array[0]); });
-  };
-  const std::vector<std::uint32_t> leaves = parts.holding.LeavesOf(rank);
-  if (!each_leaf) return build(leaves);
-  for (const std::uint32_t leaf : leaves) build({leaf});
+  HeldPart<Real>& here = *parts.here;
+  here.numbers = ObjectsOf(parts.tree, parts.holding.LeavesOf(rank));
+  here.model = BuildModel<Real>(SubsetOf(shapes, here.numbers), HierarchyFor(kernel));
+  here.kernel = MakeKernel(kernel, here.model);
+  parts.rounding = here.kernel->Rounding();
+  here.model.ForEachArray(
+      [&](const auto& array) { parts.model_bytes += array.size() * sizeof(array[0]); });
 }
-
-}  // namespace
 
 /// Bytes that one rank may take, of what its node has.
 std::uint64_t AllowedBytes(const World& world, const SceneChoice& choice) {
@@ -115,6 +125,8 @@ std::uint64_t AllowedBytes(const World& world, const SceneChoice& choice) {
   const Node node(world.comm);
   return AvailableBytes() / static_cast<std::uint64_t>(node.size());
 }
+
+}  // namespace
 
 template <class Real>
 SceneParts<Real> PartsForAll(const World& world, const SceneChoice& choice,
@@ -139,9 +151,14 @@ SceneParts<Real> PartsForAll(const World& world, const SceneChoice& choice,
     parts.tree = ObjectTree(BoxesOf(shapes), static_cast<std::uint32_t>(leaves));
     for (std::uint32_t leaf = 0; leaf < parts.tree.leaves(); ++leaf)
       parts.copies += parts.tree.ObjectsIn(leaf).size();
-    parts.holding = division.coupled ? Holding::Dealt(division.holders, parts.tree.leaves())
-                                     : Divide(shapes, parts.tree, division, allowed);
-    Build(shapes, kernel, world.rank, division.coupled, parts);
+    if (division.coupled) {
+      const std::vector<std::uint64_t> bytes = LeafBytes(shapes, parts.tree);
+      parts.most_bytes = MostBytesCoupled(bytes, division.replicate, allowed);
+      parts.holding = CoupledAtFirst(bytes, division.holders, parts.most_bytes);
+    } else {
+      parts.holding = Divide(shapes, parts.tree, division, allowed);
+    }
+    Build(shapes, kernel, world.rank, parts);
     if (!division.coupled) parts.scene.shapes = {};
     return true;
   });
@@ -151,18 +168,15 @@ SceneParts<Real> PartsForAll(const World& world, const SceneChoice& choice,
 }
 
 template <class Real>
-std::vector<LeafLoad> LoadsOf(const SceneParts<Real>& parts) {
-  std::vector<LeafLoad> loads(parts.tree.leaves());
-  for (std::uint32_t leaf = 0; leaf < parts.tree.leaves(); ++leaf)
-    loads[leaf].bytes = BytesToBuild(parts.scene.shapes, parts.tree.ObjectsIn(leaf));
-  return loads;
+std::vector<std::uint64_t> LeafBytes(const SceneParts<Real>& parts) {
+  return LeafBytes(parts.scene.shapes, parts.tree);
 }
 
 template <class Real>
 void Hold(const World& world, Holding holding, const std::string& kernel, SceneParts<Real>& parts) {
   parts.holding = std::move(holding);
   OnAllRanks(world, [&] {
-    Build(std::exchange(parts.scene.shapes, {}), kernel, world.rank, false, parts);
+    Build(std::exchange(parts.scene.shapes, {}), kernel, world.rank, parts);
     return true;
   });
 }
@@ -172,8 +186,8 @@ template SceneParts<float> PartsForAll(const World&, const SceneChoice&, const s
 template SceneParts<double> PartsForAll(const World&, const SceneChoice&, const std::string&,
                                         Division);
 
-template std::vector<LeafLoad> LoadsOf(const SceneParts<float>&);
-template std::vector<LeafLoad> LoadsOf(const SceneParts<double>&);
+template std::vector<std::uint64_t> LeafBytes(const SceneParts<float>&);
+template std::vector<std::uint64_t> LeafBytes(const SceneParts<double>&);
 template void Hold(const World&, Holding, const std::string&, SceneParts<float>&);
 template void Hold(const World&, Holding, const std::string&, SceneParts<double>&);
 

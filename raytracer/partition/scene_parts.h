@@ -4,10 +4,8 @@
 #ifndef STIPPLE_RAYTRACER_PARTITION_SCENE_PARTS_H
 #define STIPPLE_RAYTRACER_PARTITION_SCENE_PARTS_H
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,7 +18,7 @@
 
 namespace stipple::raytracer {
 
-/// Objects ready for rays, by one hierarchy: those of one leaf, or of all that a rank holds.
+/// All objects that a rank holds, each once, ready for rays; without a kernel if it holds none.
 template <class Real>
 struct HeldPart {
   Model<Real> model;
@@ -33,19 +31,14 @@ struct SceneParts {
   Scene scene;  // without shapes, but those that Hold still needs
   ObjectTree tree;
   Holding holding;
-  // By leaf; the same for all leaves of this rank, each object once, but while a pilot asks what
-  // each leaf costs. Null: others hold it.
-  std::vector<std::shared_ptr<HeldPart<Real>>> held;
+  std::unique_ptr<HeldPart<Real>> here;
+  std::uint64_t most_bytes = 0;                    // that a rank may hold of a coupled scene
   Real rounding = 0;                               // of distances that kernels find
   std::array<std::uint64_t, kShapeKinds> count{};  // objects of the whole scene, by kind
   std::uint64_t copies =
       0;  // objects in all leaves together; more than `objects`, as some lie in several
   std::uint64_t model_bytes = 0;  // of what this rank holds
   double load_s = 0, build_s = 0, build_cpu_s = 0;
-
-  bool HoldsAllAsOne() const {
-    return held.front() && std::ranges::adjacent_find(held, std::not_equal_to()) == held.end();
-  }
 };
 
 /// What is held by whom.
@@ -53,7 +46,7 @@ struct Division {
   int holders = 1;       // ranks 0 to holders - 1 hold objects
   double replicate = 0;  // share of the leaves that each holds; 0: one leaf each
   bool fill = false;     // instead: as many leaves each as fit into memory
-  bool coupled = false;  // several leaves for each rank, each by itself; Hold will change that
+  bool coupled = false;  // several leaves for each rank; Hold will change who holds which
 };
 
 /// The chosen scene, divided. Every rank calls it. Errors: StoppedTogether.
@@ -61,12 +54,9 @@ template <class Real>
 SceneParts<Real> PartsForAll(const World& world, const SceneChoice& choice,
                              const std::string& kernel, Division division);
 
-/// What each leaf of a scene takes; its work is 0. Before Hold.
+/// Bytes of each leaf's objects, ready for rays. Before Hold.
 template <class Real>
-std::vector<LeafLoad> LoadsOf(const SceneParts<Real>& parts);
-
-/// Bytes that this rank may take for objects. Every rank calls it.
-std::uint64_t AllowedBytes(const World& world, const SceneChoice& choice);
+std::vector<std::uint64_t> LeafBytes(const SceneParts<Real>& parts);
 
 /// Another division of a coupled scene's leaves: every rank builds what it is to hold.
 template <class Real>

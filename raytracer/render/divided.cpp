@@ -425,29 +425,49 @@ class Worker {
 /// The bundles that the host still has.
 class BundlesLeft {
  public:
-  BundlesLeft(const DividedChoice& choice, std::uint32_t count) : choice_(choice), left_(count) {
-    std::iota(left_.begin(), left_.end(), 0U);
-  }
+  BundlesLeft(const DividedChoice& choice, std::uint32_t count)
+      : choice_(choice),
+        left_(count),
+        taken_(count),
+        lists_(static_cast<std::size_t>(choice.holders)) {}
 
-  std::size_t count() const { return left_.size(); }
-  /// One for `rank`: the first that begins in what it holds, else the first of all.
+  std::size_t count() const { return left_; }
+  /// One for `rank`, while there are some: the first of those that it can follow farthest.
   std::uint32_t Take(int rank) {
-    auto chosen = left_.begin();
-    if (!choice_.homes.empty()) {
-      const auto near = std::ranges::find_if(left_, [&](std::uint32_t bundle) {
-        const std::uint32_t leaf = choice_.homes[bundle];
-        return leaf != DividedChoice::kNowhere && choice_.holding->Holds(rank, leaf);
-      });
-      if (near != left_.end()) chosen = near;
-    }
-    const std::uint32_t bundle = *chosen;
-    left_.erase(chosen);
+    List& list = lists_[static_cast<std::size_t>(rank)];
+    if (list.order.empty()) list.order = OrderFor(rank);
+    while (taken_[list.order[list.next]]) ++list.next;
+    const std::uint32_t bundle = list.order[list.next];
+    taken_[bundle] = true;
+    --left_;
     return bundle;
   }
 
  private:
+  struct List {
+    std::vector<std::uint32_t> order;
+    std::size_t next = 0;
+  };
+
+  std::vector<std::uint32_t> OrderFor(int rank) const {
+    std::vector<std::uint32_t> order(taken_.size());
+    std::iota(order.begin(), order.end(), 0U);
+    if (choice_.ways.empty()) return order;
+    std::vector<std::ptrdiff_t> follows;
+    for (const std::vector<std::uint32_t>& way : choice_.ways)
+      follows.push_back(
+          std::ranges::find_if(
+              way, [&](std::uint32_t leaf) { return !choice_.holding->Holds(rank, leaf); }) -
+          way.begin());
+    std::ranges::stable_sort(order, std::ranges::greater(),
+                             [&](std::uint32_t bundle) { return follows[bundle]; });
+    return order;
+  }
+
   const DividedChoice& choice_;
-  std::deque<std::uint32_t> left_;  // in their order
+  std::size_t left_;
+  std::vector<bool> taken_;
+  std::vector<List> lists_;  // by rank
 };
 
 /// The host: bundles out, what was found in.

@@ -17,6 +17,7 @@
 #include <string_view>
 #include <vector>
 
+#include "raytracer/partition/coupling.h"
 #include "raytracer/render/render.h"
 #include "raytracer/render/travel.h"
 
@@ -38,13 +39,12 @@ struct DividedRender {
 struct DividedChoice {
   std::string_view partition;
   PartitionChoice points;
-  int holders = 1;           // ranks that hold objects and trace: all, or all but the host
+  int holders = 1;            // ranks that hold objects and trace: all, or all but the host
   std::size_t package = 128;  // rays in a message, at most
 
-  // Where the host is to prefer bundles that begin in what a rank holds: by bundle a leaf, or
-  // kNowhere. Empty: in their order.
-  static constexpr std::uint32_t kNowhere = 0xffffffff;
-  std::vector<std::uint32_t> homes{};
+  // Where the host is to prefer bundles that a rank can follow far: the way of one ray of each.
+  // Empty: in their order.
+  Ways ways{};
   const Holding* holding = nullptr;
 };
 

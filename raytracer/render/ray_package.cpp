@@ -13,7 +13,7 @@ enum Flag : std::uint8_t {
   kMet = 8,      // an object, so far
   kSmooth = 16,  // whose normals differ
   kInMedia = 32,
-  kSeenAhead = 64
+  kPassed = 64
 };
 
 // A component of a colour has less than 43 bits and a sign: see kBrightest.
@@ -33,6 +33,10 @@ class Writer {
   void PutColor(std::int64_t color) {
     std::memcpy(next_, &color, kColorBytes);
     next_ += kColorBytes;
+  }
+  void PutPassed(const PassedRanks& passed) {
+    Put(static_cast<std::uint8_t>(passed.ranks().size()));
+    for (const std::uint16_t rank : passed.ranks()) Put(rank);
   }
   std::byte* end() const { return next_; }
 
@@ -58,6 +62,9 @@ class Reader {
     constexpr unsigned kAbove = 64 - 8 * kColorBytes;
     return static_cast<std::int64_t>(bits << kAbove) >> kAbove;  // with its sign
   }
+  void TakePassed(PassedRanks& passed) {
+    for (auto left = Take<std::uint8_t>(); left > 0; --left) passed.Add(Take<std::uint16_t>());
+  }
 
  private:
   const std::byte* next_;
@@ -71,7 +78,7 @@ std::uint8_t FlagsOf(const Traveller<Real>& ray) {
   return static_cast<std::uint8_t>(
       (ray.to_light ? kToLight : 0) | (ray.first ? kFirst : 0) | (ray.eye_ray != 0 ? kFromEye : 0) |
       (met ? kMet : 0) | (met && smooth ? kSmooth : 0) | (ray.media.count != 0 ? kInMedia : 0) |
-      (ray.seen_ahead != 0 ? kSeenAhead : 0));
+      (ray.passed.ranks().empty() ? 0 : kPassed));
 }
 
 template <class Real>
@@ -112,7 +119,7 @@ void RayPackage<Real>::Add(const Traveller<Real>& ray) {
   to.Put(flags);
   to.Put(ray.point);
   to.Put(ray.seen);
-  if ((flags & kSeenAhead) != 0) to.Put(ray.seen_ahead);
+  if ((flags & kPassed) != 0) to.PutPassed(ray.passed);
   if ((flags & kFromEye) != 0) {
     to.Put(ray.eye_ray);
   } else {
@@ -152,7 +159,7 @@ PackageHeader Unpack(std::span<const std::byte> bytes, const RankTracer<Real>& t
     ray.first = (flags & kFirst) != 0;
     ray.point = from.Take<RasterPoint>();
     ray.seen = from.Take<std::uint16_t>();
-    if ((flags & kSeenAhead) != 0) ray.seen_ahead = from.Take<std::uint32_t>();
+    if ((flags & kPassed) != 0) from.TakePassed(ray.passed);
     ray.arrived = true;
     if ((flags & kFromEye) != 0) {
       ray.eye_ray = from.Take<std::uint16_t>();

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "raytracer/render/travel.h"
 
-#include <limits>
-
 namespace stipple::raytracer {
 namespace {
 
@@ -13,13 +11,14 @@ class RankTracerIn final : public RankTracer<Real> {
   using Leg = typename Shading::Leg;
 
   RankTracerIn(const SceneParts<Real>& parts, int rank, ShadingChoice shading, ImageSize image,
-               Samples samples)
+               Samples samples, bool pilot)
       : parts_(parts),
         rank_(rank),
         eye_rays_(parts.scene.view, RasterOf(image, samples), samples),
         shader_(parts.scene, shading, parts.rounding),
-        leaf_work_(parts.tree.leaves()),
-        holds_all_(parts.HoldsAllAsOne()) {}
+        pilot_(pilot),
+        here_(*parts.here),
+        holds_all_(parts.holding.LeavesOf(rank).size() == parts.tree.leaves()) {}
 
   void Begin(RasterPoint point, std::vector<Traveller<Real>>& rays, RayResult& found) override {
     shader_.counts().eye_rays += eye_rays_.count();
@@ -55,28 +54,48 @@ class RankTracerIn final : public RankTracer<Real> {
   }
 
   const RayCounts& counts() const override { return shader_.counts(); }
-  const std::vector<std::uint64_t>& leaf_work() const override { return leaf_work_; }
+  const std::vector<std::uint32_t>& ways() const override { return ways_; }
 
  private:
+  // To choose who goes on with a ray so many of the leaves on its way are looked at.
+  static constexpr std::size_t kLookAhead = 8;
+
   /// Where it goes next. `stopped`: something stands before its light.
   int Follow(Traveller<Real>& ray, std::span<const std::uint64_t> waiting, bool& stopped) {
     if (holds_all_) return FollowHere(ray, waiting, stopped);
-    const Ray<double> line = {Wide(ray.ray.origin), Wide(ray.ray.direction)};
-    const std::uint64_t walk =
-        parts_.tree.Along(line, static_cast<double>(shader_.rounding()), way_);
-    shader_.counts().tests.box_tests += walk;
-    if (ray.arrived) shader_.counts().repeated_tests += walk;
-    for (; ray.seen < way_.size(); PassLeaf(ray)) {
-      const LeafOnWay& next = way_[ray.seen];
+    way_.Begin(parts_.tree, {Wide(ray.ray.origin), Wide(ray.ray.direction)},
+               static_cast<double>(shader_.rounding()));
+    const int next = FollowOnWay(ray, waiting, stopped);
+    shader_.counts().tests.box_tests += way_.Work();
+    if (ray.arrived) shader_.counts().repeated_tests += way_.Work();
+    return next;
+  }
+
+  int FollowOnWay(Traveller<Real>& ray, std::span<const std::uint64_t> waiting, bool& stopped) {
+    bool tested = false;
+    for (; way_.Reach(ray.seen + std::size_t{1}); ++ray.seen) {
+      const LeafOnWay next = way_.leaves()[ray.seen];
       if (static_cast<double>(ray.t) < next.enter) break;
-      if (!parts_.holding.Holds(rank_, next.leaf) ||
-          (!ray.arrived && parts_.holding.OthersHaveFewer(next.leaf, waiting, rank_)))
-        return parts_.holding.Next(std::span(way_).subspan(ray.seen), waiting, ray.point);
-      stopped = Test(next.leaf, ray);
-      if (stopped) break;
-      SeeAhead(*parts_.held[next.leaf], ray);
+      const bool held = parts_.holding.Holds(rank_, next.leaf);
+      if ((held && tested) || ray.passed.AnyHolds(parts_.holding, next.leaf)) continue;
+      if (!held || (!ray.arrived && parts_.holding.OthersHaveFewer(next.leaf, waiting, rank_))) {
+        if (tested) ray.passed.Add(rank_);
+        way_.Reach(ray.seen + kLookAhead);
+        return parts_.holding.Next(way_.leaves().subspan(ray.seen), waiting, ray.point);
+      }
+      stopped = Test(ray);
+      tested = true;
+      if (!stopped) continue;
+      ++ray.seen;
+      break;
     }
+    if (pilot_) KeepWay(ray.seen);
     return RankTracer<Real>::kEnded;
+  }
+
+  void KeepWay(std::size_t leaves) {
+    ways_.push_back(static_cast<std::uint32_t>(leaves));
+    for (const LeafOnWay& on_way : way_.leaves().first(leaves)) ways_.push_back(on_way.leaf);
   }
 
   /// Where all objects are at hand a ray's way need not be known.
@@ -84,29 +103,15 @@ class RankTracerIn final : public RankTracer<Real> {
     const LeafOnWay any;
     if (!ray.arrived && parts_.holding.OthersHaveFewer(any.leaf, waiting, rank_))
       return parts_.holding.Next({&any, 1}, waiting, ray.point);
-    stopped = Test(any.leaf, ray);
+    stopped = Test(ray);
     return RankTracer<Real>::kEnded;
   }
 
-  /// Tests what is held together with a leaf. Does it stand before the ray's light?
-  bool Test(std::uint32_t leaf, Traveller<Real>& ray) {
-    const HeldPart<Real>& part = *parts_.held[leaf];
-    const std::uint64_t before = shader_.counts().Work();
-    bool stopped = false;
-    if (ray.to_light)
-      stopped = part.kernel->Occluded(ray.ray, ray.t, shader_.counts().tests);
-    else
-      Meet(part, ray);
-    leaf_work_[leaf] += shader_.counts().Work() - before;
-    return stopped;
-  }
-
-  /// Leaves further on whose objects were tested together with those of the next.
-  void SeeAhead(const HeldPart<Real>& part, Traveller<Real>& ray) {
-    const std::size_t first = ray.seen + std::size_t{1};
-    const std::size_t most = std::numeric_limits<decltype(ray.seen_ahead)>::digits;
-    for (std::size_t i = 0; i < most && first + i < way_.size(); ++i)
-      if (parts_.held[way_[first + i].leaf].get() == &part) ray.seen_ahead |= 1U << i;
+  /// Tests all that is held. Does something stand before the ray's light?
+  bool Test(Traveller<Real>& ray) {
+    if (ray.to_light) return here_.kernel->Occluded(ray.ray, ray.t, shader_.counts().tests);
+    Meet(ray);
+    return false;
   }
 
   static Vec3 Wide(Vec<Real> v) {
@@ -114,15 +119,15 @@ class RankTracerIn final : public RankTracer<Real> {
   }
 
   /// Keeps what is nearer than what was met before.
-  void Meet(const HeldPart<Real>& part, Traveller<Real>& ray) {
-    const Hit<Real> hit = part.kernel->Intersect(ray.ray, shader_.counts().tests);
+  void Meet(Traveller<Real>& ray) {
+    const Hit<Real> hit = here_.kernel->IntersectWithin(ray.ray, ray.t, shader_.counts().tests);
     if (hit.object == kNoObject) return;
-    const std::uint32_t object = part.numbers[hit.object];
+    const std::uint32_t object = here_.numbers[hit.object];
     if (hit.t > ray.t || (hit.t == ray.t && object >= ray.object)) return;
     ray.t = hit.t;
     ray.object = object;
-    ray.material = part.model.objects[hit.object].material;
-    ray.normals = NormalsAt(part.model, hit, shader_.PointAt(ray.ray, hit.t));
+    ray.material = here_.model.objects[hit.object].material;
+    ray.normals = NormalsAt(here_.model, hit, shader_.PointAt(ray.ray, hit.t));
   }
 
   /// Tells of rays that come of one that has ended.
@@ -187,9 +192,11 @@ class RankTracerIn final : public RankTracer<Real> {
   int rank_;
   SampleRays<Real> eye_rays_;
   Shader<Real, kRules> shader_;
-  std::vector<LeafOnWay> way_;
-  std::vector<std::uint64_t> leaf_work_;
-  bool holds_all_;
+  LeafWay way_;
+  std::vector<std::uint32_t> ways_;
+  const bool pilot_;
+  const HeldPart<Real>& here_;
+  const bool holds_all_;
 };
 
 }  // namespace
@@ -197,17 +204,18 @@ class RankTracerIn final : public RankTracer<Real> {
 template <class Real>
 std::unique_ptr<RankTracer<Real>> MakeRankTracer(const SceneParts<Real>& parts, int rank,
                                                  ShadingChoice shading, ImageSize image,
-                                                 Samples samples) {
+                                                 Samples samples, bool pilot) {
   return WithRules(std::max(shading.at_least, RulesOf(parts.scene)),
                    [&]<Rules kRules>() -> std::unique_ptr<RankTracer<Real>> {
                      return std::make_unique<RankTracerIn<Real, kRules>>(parts, rank, shading,
-                                                                         image, samples);
+                                                                         image, samples, pilot);
                    });
 }
 
 template std::unique_ptr<RankTracer<float>> MakeRankTracer(const SceneParts<float>&, int,
-                                                           ShadingChoice, ImageSize, Samples);
+                                                           ShadingChoice, ImageSize, Samples, bool);
 template std::unique_ptr<RankTracer<double>> MakeRankTracer(const SceneParts<double>&, int,
-                                                            ShadingChoice, ImageSize, Samples);
+                                                            ShadingChoice, ImageSize, Samples,
+                                                            bool);
 
 }  // namespace stipple::raytracer

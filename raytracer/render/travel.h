@@ -8,7 +8,10 @@
 #ifndef STIPPLE_RAYTRACER_RENDER_TRAVEL_H
 #define STIPPLE_RAYTRACER_RENDER_TRAVEL_H
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -22,6 +25,27 @@
 
 namespace stipple::raytracer {
 
+/// The ranks that tested all they hold for a ray, the latest last; the earliest are forgotten, and
+/// what they hold is tested again if somebody else holds it, too.
+class PassedRanks {
+ public:
+  static constexpr std::size_t kMost = 6;
+
+  void Add(int rank) {
+    if (rank > std::numeric_limits<std::uint16_t>::max()) return;
+    if (count_ == kMost) std::shift_left(rank_.begin(), rank_.end(), 1), --count_;
+    rank_[count_++] = static_cast<std::uint16_t>(rank);
+  }
+  bool AnyHolds(const Holding& holding, std::uint32_t leaf) const {
+    return std::ranges::any_of(ranks(), [&](int rank) { return holding.Holds(rank, leaf); });
+  }
+  std::span<const std::uint16_t> ranks() const { return {rank_.data(), count_}; }
+
+ private:
+  std::array<std::uint16_t, kMost> rank_{};
+  std::uint8_t count_ = 0;
+};
+
 /// How it travels in messages: ray_package.h.
 template <class Real>
 struct Traveller {
@@ -34,7 +58,7 @@ struct Traveller {
   std::uint32_t object = kNoObject;  // the nearest so far
   std::uint32_t material = 0;        // of it
   std::uint16_t seen = 0;            // leaves on its way that it has been through, from the first
-  std::uint32_t seen_ahead = 0;      // bit i: leaf seen + 1 + i, too, with those of a rank before
+  PassedRanks passed;                // it has been through whatever they hold
   std::uint16_t eye_ray = 0;         // 1 + its number among those of its point; 0: it is none
   std::uint8_t depth = 1;
   bool to_light = false;
@@ -42,17 +66,6 @@ struct Traveller {
   bool arrived = false;  // in a message: another rank has looked for its way before
   PackedMedia media;
 };
-
-/// It has been through the leaf that comes next.
-template <class Real>
-void PassLeaf(Traveller<Real>& ray) {
-  bool seen = true;
-  while (seen) {
-    ++ray.seen;
-    seen = (ray.seen_ahead & 1U) != 0;
-    ray.seen_ahead >>= 1U;
-  }
-}
 
 /// What one rank does with rays.
 template <class Real>
@@ -74,16 +87,17 @@ class RankTracer {
                       std::vector<Traveller<Real>>& rays, RayResult& found) = 0;
 
   virtual const RayCounts& counts() const = 0;
-  /// Tests done in each leaf; of leaves that are held together, in that which a ray came to first.
-  virtual const std::vector<std::uint64_t>& leaf_work() const = 0;
+  /// Of each ray that ended here, the leaves that it went through, each way behind its length; for
+  /// the tracer of a pilot. Of none where all objects are at hand.
+  virtual const std::vector<std::uint32_t>& ways() const = 0;
 };
 
-/// `rank`: as `parts.holding` counts them. Parts must outlive it. Errors: UsageError for a kernel
-/// that cannot trace this scene.
+/// `rank`: as `parts.holding` counts them. `pilot`: keeps the ways of rays. Parts must outlive it.
+/// Errors: UsageError for a kernel that cannot trace this scene.
 template <class Real>
 std::unique_ptr<RankTracer<Real>> MakeRankTracer(const SceneParts<Real>& parts, int rank,
                                                  ShadingChoice shading, ImageSize image,
-                                                 Samples samples);
+                                                 Samples samples, bool pilot = false);
 
 }  // namespace stipple::raytracer
 
