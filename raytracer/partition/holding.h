@@ -32,7 +32,7 @@ class Holding {
   std::uint32_t leaves() const { return static_cast<std::uint32_t>(holders_.size()); }
 
   /// Ranks differ in what waits for them if they differ by so many rays.
-  static constexpr std::uint64_t kManyRays = 128;
+  static constexpr std::uint64_t kManyRays = 16;
   /// Does another rank hold this leaf for which many fewer rays wait than for `rank`?
   bool OthersHaveFewer(std::uint32_t leaf, std::span<const std::uint64_t> waiting, int rank) const {
     const std::uint64_t mine = waiting[static_cast<std::size_t>(rank)];

@@ -38,6 +38,14 @@ enum Tag : int {
 // to do.
 constexpr std::size_t kCredits = 8;
 
+/// A package with so many rays goes to who has no work though it is not full, so that in all of a
+/// rank's packages lies at most about an eighth of the rays that it will see: five for each point.
+std::size_t WorthSending(const DividedChoice& choice) {
+  const auto ranks = static_cast<std::size_t>(choice.holders);
+  const std::size_t rays = 5 * PointCount(choice.points.raster) / ranks;
+  return std::clamp<std::size_t>(rays / 8 / std::max<std::size_t>(ranks - 1, 1), 1, choice.package);
+}
+
 // Rays between two looks for letters.
 constexpr int kRaysPerLook = 16;
 
@@ -117,6 +125,7 @@ struct Neighbour {
   std::size_t held = 0;                   // its rays, not followed
   Standing standing;                      // that it has not been told of
   std::uint32_t told = 0;                 // rays that waited for it when it last told
+  std::uint32_t was_told = 0;             // and here, when it was last told
 };
 
 template <class Real>
@@ -134,6 +143,7 @@ class Worker {
         waiting_(static_cast<std::size_t>(choice.holders)),
         four_counters_(world.rank, choice.holders),
         safra_(world.rank, choice.holders),
+        worth_sending_(WorthSending(choice)),
         progress_(PointCount(choice.points.raster) / static_cast<std::size_t>(choice.holders),
                   world.rank == 0) {
     if (world.rank == assembling_) assembly_.emplace(choice.points);
@@ -145,6 +155,7 @@ class Worker {
       if (until_look-- == 0) {
         while (TakeLetter(false)) {
         }
+        SendToWaiting();
         until_look = kRaysPerLook;
       }
       if (FollowOne() || BeginPoint()) continue;
@@ -235,6 +246,17 @@ class Worker {
     Record();
   }
 
+  /// To those who have worked off all that they have got of this rank and told of no other work.
+  void SendToWaiting() {
+    for (int to = 0; to < choice_.holders; ++to) {
+      const Neighbour<Real>& neighbour = neighbours_[static_cast<std::size_t>(to)];
+      if (!neighbour.outgoing.empty() && neighbour.under_way.empty() &&
+          neighbour.told < Holding::kManyRays &&
+          neighbour.outgoing.front().rays() >= worth_sending_ && Intact(kPartFull))
+        SendPackage(to);
+    }
+  }
+
   /// Packages that are not full, too, as nothing else will come to fill them: to those who have
   /// worked off all that they have got of this rank. Others have work, and will tell when not.
   void SendRest() {
@@ -246,14 +268,17 @@ class Worker {
     }
   }
 
+  /// What was worked off, or that there is no work left here.
   void SendCredit(int to) {
     Neighbour<Real>& neighbour = neighbours_[static_cast<std::size_t>(to)];
-    if (neighbour.standing.worked_off > 0) mail_.Post(to, kCredit, StandingFor(neighbour));
+    const bool news = neighbour.was_told >= Holding::kManyRays && queue_.size() == 0;
+    if (neighbour.standing.worked_off > 0 || news) mail_.Post(to, kCredit, StandingFor(neighbour));
   }
 
   Standing StandingFor(Neighbour<Real>& neighbour) const {
     Standing standing = std::exchange(neighbour.standing, {});
     standing.waiting = static_cast<std::uint32_t>(queue_.size() - neighbour.held);
+    neighbour.was_told = standing.waiting;
     return standing;
   }
 
@@ -418,6 +443,7 @@ class Worker {
   std::uint64_t packages_received_ = 0;
   FourCounters four_counters_;
   Safra safra_;
+  std::size_t worth_sending_;
   bool ended_ = false;
   Progress progress_;
 };

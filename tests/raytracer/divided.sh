@@ -34,7 +34,8 @@ check 5 $divided --partition bundles --bundle 100 --package 7
 check 5 $divided --partition guided --replicate 1
 check 5 --objects coupled --partition bundles --bundle 100
 check 4 --objects coupled --replicate 0.8 --partition guided
-grep -q 'was foretold by the pilot' other.txt
+check 3 --objects coupled --replicate 1 --partition scattered
+grep -q 'the pilot foretold .* journeys per ray' other.txt
 serial --scene rings --scene-size 2 --resolution 40x40 --samples 2 --precision float
 check 4 $divided --partition bundles --bundle 64 --select modulo
 serial --scene tree --scene-size 4 --resolution 40x40 --kernel embree

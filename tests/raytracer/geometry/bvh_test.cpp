@@ -87,6 +87,11 @@ TEST(Bvh, HitsWhatBruteForceHits) {
       const Hit<double> hit = kernel->Intersect(ray, tests);
       ASSERT_EQ(hit.object, expected.object);
       ASSERT_EQ(hit.t, expected.t);
+      const Hit<double> as_far = kernel->IntersectWithin(ray, expected.t, tests);
+      ASSERT_EQ(as_far.object, expected.object);
+      const double nearer = std::nextafter(expected.t, 0);
+      ASSERT_EQ(kernel->IntersectWithin(ray, nearer, tests).object,
+                std::isinf(expected.t) ? expected.object : kNoObject);
       hits += hit.object != kNoObject ? 1 : 0;
       ASSERT_EQ(kernel->Occluded(ray, kMiss<double>, tests), expected.object != kNoObject);
       ASSERT_FALSE(kernel->Occluded(ray, expected.t, tests) && expected.object != kNoObject);

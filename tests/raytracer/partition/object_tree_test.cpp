@@ -76,17 +76,24 @@ TEST(ObjectTree, LeavesHoldAboutTheSameNumberOfObjects) {
   }
 }
 
+/// All leaves on a ray's way.
+std::vector<LeafOnWay> WayOf(const ObjectTree& tree, const Ray<double>& ray) {
+  LeafWay way;
+  way.Begin(tree, ray, kRounding);
+  EXPECT_EQ(way.Reach(tree.leaves() + 1), false);
+  return {way.leaves().begin(), way.leaves().end()};
+}
+
 // What makes the picture that of the serial program.
 TEST(ObjectTree, WhateverARayMeetsLiesInALeafOnItsWay) {
   const std::vector<Bounds> boxes = SmallBoxes(300, 3);
   Dice dice(4);
-  std::vector<LeafOnWay> way;
   for (const std::uint32_t leaves : {1U, 2U, 7U, 32U}) {
     const ObjectTree tree(boxes, leaves);
     for (int i = 0; i < 20000; ++i) {
       Ray<double> ray{dice.Point(12), dice.Direction()};
       if (i % 3 == 0) ray.origin = boxes[static_cast<std::size_t>(i) % boxes.size()].low;
-      tree.Along(ray, kRounding, way);
+      const std::vector<LeafOnWay> way = WayOf(tree, ray);
       for (std::size_t at = 1; at < way.size(); ++at) EXPECT_LE(way[at - 1].enter, way[at].enter);
       for (std::uint32_t number = 0; number < boxes.size(); ++number) {
         const double meets = EnterBounds(boxes[number], SlabRay(ray, 1), 1e30);
@@ -102,9 +109,7 @@ TEST(ObjectTree, WhateverARayMeetsLiesInALeafOnItsWay) {
 }
 
 TEST(ObjectTree, NothingAndOneEnormousObject) {
-  std::vector<LeafOnWay> way;
-  ObjectTree({}, 8).Along({{0, 0, 0}, {0, 0, 1}}, kRounding, way);
-  EXPECT_TRUE(way.empty());
+  EXPECT_TRUE(WayOf(ObjectTree({}, 8), {{0, 0, 0}, {0, 0, 1}}).empty());
   std::vector<Bounds> boxes = SmallBoxes(50, 5);
   boxes.push_back({{-1e6, -1e6, -1e6}, {1e6, 1e6, 1e6}});
   const ObjectTree tree(boxes, 8);
@@ -115,9 +120,29 @@ TEST(ObjectTree, NothingAndOneEnormousObject) {
 TEST(ObjectTree, ObjectsInOnePlaceStillGiveAsManyLeaves) {
   const std::vector<Bounds> boxes(20, Bounds{{1, 1, 1}, {2, 2, 2}});
   const ObjectTree tree(boxes, 8);
-  std::vector<LeafOnWay> way;
-  tree.Along({{0, 1.5, 1.5}, {1, 0, 0}}, kRounding, way);
-  EXPECT_FALSE(way.empty());
+  EXPECT_FALSE(WayOf(tree, {{0, 1.5, 1.5}, {1, 0, 0}}).empty());
+}
+
+TEST(ObjectTree, AWayIsTheSameHoweverMuchOfItIsAskedForAndCostsNoMoreThanIsAsked) {
+  const ObjectTree tree(SmallBoxes(300, 3), 32);
+  Dice dice(7);
+  for (int i = 0; i < 1000; ++i) {
+    const Ray<double> ray{dice.Point(12), dice.Direction()};
+    const std::vector<LeafOnWay> whole = WayOf(tree, ray);
+    LeafWay way;
+    way.Begin(tree, ray, kRounding);
+    std::uint64_t work = way.Work();
+    for (std::size_t count = 1; count <= whole.size(); ++count) {
+      ASSERT_TRUE(way.Reach(count));
+      ASSERT_EQ(way.leaves().size(), count);
+      ASSERT_EQ(way.leaves().back().leaf, whole[count - 1].leaf);
+      ASSERT_EQ(way.leaves().back().enter, whole[count - 1].enter);
+      ASSERT_GE(way.Work(), work);
+      work = way.Work();
+    }
+    ASSERT_FALSE(way.Reach(whole.size() + 1));
+    ASSERT_EQ(way.Work(), work);
+  }
 }
 
 TEST(Holding, EvenReplicationIsTheStudys) {
@@ -150,45 +175,6 @@ TEST(Holding, ARayGoesToWhoHasFewIfTheOthersHaveManyMore) {
   EXPECT_EQ(holding.Next(way, waiting, 5), 1);  // of 0, 1 and 2, which hold leaf 2
   waiting[0] = waiting[1] = 2 * Holding::kManyRays;
   EXPECT_EQ(holding.Next(way, waiting, 5), 2);
-}
-
-std::vector<LeafLoad> SomeLoads(std::size_t count) {
-  Dice dice(6);
-  std::vector<LeafLoad> loads;
-  for (std::size_t i = 0; i < count; ++i)
-    loads.push_back({static_cast<std::uint64_t>(dice.In(0, 1) < 0.1 ? 10000 : dice.In(0, 1000)),
-                     static_cast<std::uint64_t>(dice.In(50, 150))});
-  return loads;
-}
-
-TEST(Holding, CoupledHoldsEachLeafWithinTheLimit) {
-  const std::vector<LeafLoad> loads = SomeLoads(32);
-  std::uint64_t all = 0;
-  for (const LeafLoad& load : loads) all += load.bytes;
-  for (const double share : {0.2, 0.3, 0.5, 0.75, 1.0}) {
-    const auto most = static_cast<std::uint64_t>(share * static_cast<double>(all));
-    const std::optional<Holding> holding = Holding::Coupled(8, loads, most);
-    ASSERT_TRUE(holding);
-    for (int rank = 0; rank < 8; ++rank) {
-      std::uint64_t bytes = 0;
-      for (const std::uint32_t leaf : holding->LeavesOf(rank)) bytes += loads[leaf].bytes;
-      EXPECT_LE(bytes, most);
-    }
-    for (std::uint32_t leaf = 0; leaf < 32; ++leaf)
-      EXPECT_TRUE(holding->Holds(
-          holding->Next(std::vector<LeafOnWay>{{leaf, 0}}, std::vector<std::uint64_t>(8), 3),
-          leaf));
-  }
-  EXPECT_FALSE(Holding::Coupled(8, loads, all / 16));
-}
-
-TEST(Holding, MoreMemoryMakesTheForetoldBalanceBetter) {
-  const std::vector<LeafLoad> loads = SomeLoads(32);
-  std::uint64_t all = 0;
-  for (const LeafLoad& load : loads) all += load.bytes;
-  EXPECT_GT(Holding::Dealt(8, 32).Balance(loads), 1.2);
-  EXPECT_LT(Holding::Coupled(8, loads, all / 2)->Balance(loads), 1.05);
-  EXPECT_NEAR(Holding::Coupled(8, loads, all)->Balance(loads), 1, 1e-9);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <tuple>
 
@@ -24,11 +25,11 @@ class OnlyEyeRays final : public RankTracer<Real> {
     return RankTracer<Real>::kEnded;
   }
   const RayCounts& counts() const override { return counts_; }
-  const std::vector<std::uint64_t>& leaf_work() const override { return leaf_work_; }
+  const std::vector<std::uint32_t>& ways() const override { return ways_; }
 
  private:
   RayCounts counts_;
-  std::vector<std::uint64_t> leaf_work_;
+  std::vector<std::uint32_t> ways_;
 };
 
 /// Of every kind one, with values at the ends of what they may be.
@@ -45,7 +46,7 @@ std::vector<Traveller<Real>> SomeRays() {
   reflected.throughput = third;
   reflected.depth = 64;
   reflected.seen = 65535;
-  reflected.seen_ahead = 0xfffffffe;
+  for (const int rank : {9, 0, 65535, 1, 2, 3, 4}) reflected.passed.Add(rank);
   reflected.media.inside = {1, 2, 3, 4, 5, 6, 7, 8};
   reflected.media.count = 8;
   Traveller<Real> met = reflected, flat = eye;
@@ -70,10 +71,9 @@ void ExpectSame(const Traveller<Real>& a, const Traveller<Real>& b) {
   EXPECT_EQ(a.throughput, b.throughput);
   EXPECT_EQ(a.t, b.t);
   EXPECT_EQ(a.object, b.object);
-  EXPECT_EQ(std::tuple(a.point, a.material, a.seen, a.seen_ahead, a.eye_ray, a.depth, a.to_light,
-                       a.first),
-            std::tuple(b.point, b.material, b.seen, b.seen_ahead, b.eye_ray, b.depth, b.to_light,
-                       b.first));
+  EXPECT_EQ(std::tuple(a.point, a.material, a.seen, a.eye_ray, a.depth, a.to_light, a.first),
+            std::tuple(b.point, b.material, b.seen, b.eye_ray, b.depth, b.to_light, b.first));
+  EXPECT_TRUE(std::ranges::equal(a.passed.ranks(), b.passed.ranks()));
   EXPECT_EQ(a.normals.face, b.normals.face);
   EXPECT_EQ(a.normals.shading, b.normals.shading);
   EXPECT_EQ(a.media.count, b.media.count);
@@ -114,9 +114,18 @@ TEST(RayPackage, ARayTakesFewBytes) {
   EXPECT_EQ(bytes_of(rays[3]), 81U);  // to a light
   Traveller<double> reflected = rays[1];
   reflected.media.count = 0;
-  EXPECT_EQ(bytes_of(reflected), 68U);
-  reflected.seen_ahead = 0;
+  EXPECT_EQ(bytes_of(reflected), 64U + 1 + 2 * PassedRanks::kMost);
+  reflected.passed = {};
   EXPECT_EQ(bytes_of(reflected), 64U);
+}
+
+TEST(PassedRanks, TheEarliestAndThoseWithoutANumberOfTwoBytesAreForgotten) {
+  const Holding each = Holding::Even(10, 1);
+  PassedRanks passed;
+  for (int rank = 0; rank < 8; ++rank) passed.Add(rank);
+  passed.Add(65536);
+  for (std::uint32_t leaf = 0; leaf < 10; ++leaf)
+    EXPECT_EQ(passed.AnyHolds(each, leaf), leaf >= 2 && leaf < 8) << leaf;
 }
 
 }  // namespace
