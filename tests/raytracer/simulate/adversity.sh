@@ -34,7 +34,7 @@ simulate() {
 figure() { sed -nE "s/.*\"$1\":\"?([^,\"}]*).*/\1/p" run.json; }
 
 # The same run ends where part-full packages are sent, and where all packages are full; and hangs where they are kept.
-for options in '--objects partitioned --partition bundles --bundle 64' '--objects coupled --partition scattered'; do
+for options in '--objects partitioned --partition bundles --bundle 64' '--objects coupled --replicate 0.3 --partition scattered'; do
   simulate "$stipple" ipsc2 $scene $options
   test $status = 0 || { cat run.err; fail "status $status: $options"; }
   cmp real.png other.png || fail "picture differs: $options"
