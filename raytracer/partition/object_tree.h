@@ -27,13 +27,13 @@ class ObjectTree {
  public:
   /// Without objects, in one leaf.
   ObjectTree() : ObjectTree({}, 1) {}
-  /// `boxes`: of the objects, by number. At least one leaf. Of the same boxes every rank makes the
-  /// same tree.
-  ObjectTree(std::span<const Bounds> boxes, std::uint32_t leaves);
+  /// `boxes`: of the objects, or of some of them; all lie in `scene` or in these. At least one
+  /// leaf. Of the same boxes every rank makes the same tree.
+  ObjectTree(std::span<const Bounds> boxes, std::uint32_t leaves, const Bounds& scene = {});
 
-  std::uint32_t leaves() const { return static_cast<std::uint32_t>(objects_.size()); }
-  /// Numbers of the objects that reach into a leaf, ascending.
-  const std::vector<std::uint32_t>& ObjectsIn(std::uint32_t leaf) const { return objects_[leaf]; }
+  std::uint32_t leaves() const { return static_cast<std::uint32_t>(cells_.size()); }
+  /// Replaces `leaves` by those that an object with this box reaches into, ascending.
+  void LeavesOf(const Bounds& box, std::vector<std::uint32_t>& leaves) const;
   /// The leaf's part of the scene's box.
   const Bounds& CellOf(std::uint32_t leaf) const { return cells_[leaf]; }
 
@@ -65,8 +65,7 @@ class ObjectTree {
   Bounds scene_;
   std::vector<Plane> planes_;
   std::int32_t root_ = ~0;
-  std::vector<std::vector<std::uint32_t>> objects_;  // by leaf
-  std::vector<Bounds> cells_;
+  std::vector<Bounds> cells_;  // by leaf
 };
 
 }  // namespace stipple::raytracer

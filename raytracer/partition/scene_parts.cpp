@@ -8,77 +8,39 @@
 #include <numeric>
 #include <utility>
 
+#include "raytracer/partition/box_sample.h"
 #include "raytracer/render/marks.h"
 #include "raytracer/scene/memory_need.h"
 #include "raytracer/scene/node_memory.h"
-#include "raytracer/scene/patches.h"
 #include "raytracer/stopwatch.h"
 
 namespace stipple::raytracer {
 namespace {
 
-std::vector<Bounds> BoxesOf(const Shapes& shapes) {
-  std::vector<Bounds> boxes;
-  boxes.reserve(shapes.objects.size());
-  for (const Object& object : shapes.objects) boxes.push_back(BoundsOf(shapes, object));
-  return boxes;
+void Add(const Shapes& shapes, const Object& object, std::uint64_t bytes, LeafObjects& leaf) {
+  leaf.bytes += bytes;
+  ++leaf.count[static_cast<std::size_t>(object.kind)];
+  if (object.kind == ShapeKind::kTriangle)
+    leaf.normals += shapes.triangles[object.index].first_normal == kNoNormals ? 0 : 3;
+  if (object.kind != ShapeKind::kPolygon) return;
+  const Polygon<double>& polygon = shapes.polygons[object.index];
+  leaf.corners += polygon.vertex_count;
+  leaf.normals += polygon.first_normal == kNoNormals ? 0 : polygon.vertex_count;
 }
 
-/// Bytes that the rank with most takes.
-std::uint64_t MostBytes(const Holding& holding, const std::vector<std::uint64_t>& of_leaf) {
-  std::uint64_t most = 0;
-  for (int rank = 0; rank < holding.ranks(); ++rank) {
-    std::uint64_t bytes = 0;
-    for (const std::uint32_t leaf : holding.LeavesOf(rank)) bytes += of_leaf[leaf];
-    most = std::max(most, bytes);
-  }
-  return most;
-}
-
-/// Of all leaves of a rank, each once; ascending.
-std::vector<std::uint32_t> ObjectsOf(const ObjectTree& tree,
-                                     const std::vector<std::uint32_t>& leaves) {
-  std::vector<std::uint32_t> numbers;
-  for (const std::uint32_t leaf : leaves) {
-    const std::vector<std::uint32_t>& some = tree.ObjectsIn(leaf);
-    numbers.insert(numbers.end(), some.begin(), some.end());
-  }
-  std::ranges::sort(numbers);
-  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-  return numbers;
-}
-
-/// Who holds what: as chosen, else as many leaves each as fit.
-Holding Divide(const Shapes& shapes, const ObjectTree& tree, const Division& division,
-               std::uint64_t allowed) {
-  std::vector<std::uint64_t> bytes;
-  for (std::uint32_t leaf = 0; leaf < tree.leaves(); ++leaf)
-    bytes.push_back(BytesToBuild(shapes, tree.ObjectsIn(leaf)));
-  const int ranks = division.holders;
-  int each = 1;
-  if (division.replicate > 0)
-    each = std::clamp(static_cast<int>(std::lround(division.replicate * ranks)), 1, ranks);
-  else if (division.fill)
-    while (each < ranks && MostBytes(Holding::Even(ranks, each + 1), bytes) <= allowed) ++each;
-  Holding holding = Holding::Even(ranks, each);
-  std::uint64_t most = 0;
-  for (int rank = 0; rank < ranks; ++rank)
-    most = std::max(most, BytesToBuild(shapes, ObjectsOf(tree, holding.LeavesOf(rank))));
-  RequireMemory(most, allowed,
-                fmt::format("divided among {} ranks, {} {} each, the objects of one take", ranks,
-                            each, each == 1 ? "leaf" : "leaves"));
-  return holding;
-}
-
-template <class Real>
-std::shared_ptr<HeldPart<Real>> BuildPart(const Shapes& shapes,
-                                          const std::vector<std::uint32_t>& numbers,
-                                          const std::string& kernel) {
-  auto part = std::make_shared<HeldPart<Real>>();
-  part->model = BuildModel<Real>(SubsetOf(shapes, numbers), HierarchyFor(kernel));
-  part->numbers = numbers;
-  part->kernel = MakeKernel(kernel, part->model);
-  return part;
+/// Room for the objects of a leaf beside those that there is room for.
+void Reserve(const LeafObjects& leaf, Shapes& shapes) {
+  const auto of = [&](ShapeKind kind) { return leaf.count[static_cast<std::size_t>(kind)]; };
+  const auto more = [](auto& list, std::uint64_t count) { list.reserve(list.capacity() + count); };
+  more(shapes.objects, std::accumulate(leaf.count.begin(), leaf.count.end(), std::uint64_t{0}));
+  more(shapes.spheres, of(ShapeKind::kSphere));
+  more(shapes.cones, of(ShapeKind::kCone));
+  more(shapes.triangles, of(ShapeKind::kTriangle));
+  more(shapes.polygons, of(ShapeKind::kPolygon));
+  more(shapes.patches, of(ShapeKind::kPatch));
+  more(shapes.vertices, leaf.corners);
+  more(shapes.outlines, leaf.corners);
+  more(shapes.normals, leaf.normals);
 }
 
 /// Leaves of a coupled scene: on few ranks several for each, so that work can be dealt evenly. On
@@ -88,32 +50,141 @@ int CoupledLeaves(int ranks) {
   return std::max(ranks, std::min(kOnEach * ranks, kEnough));
 }
 
-/// `each_leaf`: by a hierarchy of its own.
+/// Cuts the scene.
 template <class Real>
-void Build(const Shapes& shapes, const std::string& kernel, int rank, bool each_leaf,
-           SceneParts<Real>& parts) {
+void Cut(std::uint32_t leaves, SceneParts<Real>& parts) {
+  BoxSample sample(leaves);
+  parts.objects.ForEach([&](const Shapes& shapes, const Object& object, std::uint32_t number) {
+    sample.See(BoundsOf(shapes, object), number);
+    ++parts.count[static_cast<std::size_t>(object.kind)];
+  });
+  parts.tree = ObjectTree(sample.boxes(), leaves, sample.scene());
+}
+
+/// Finds what lies in each leaf. Returns, by k - 1, the bytes that this rank takes if it holds k
+/// leaves, from its own on (Holding::Even): objects in several of them once.
+template <class Real>
+std::vector<std::uint64_t> CountLeaves(int rank, SceneParts<Real>& parts) {
+  const std::uint32_t leaves = parts.tree.leaves();
+  parts.leaves.assign(leaves, {});
+  std::vector<std::uint64_t> bytes_from(leaves);  // by the first leaf that an object lies in
+  std::vector<std::uint32_t> in;
+  parts.objects.ForEach([&](const Shapes& shapes, const Object& object, std::uint32_t) {
+    parts.tree.LeavesOf(BoundsOf(shapes, object), in);
+    const std::uint64_t bytes = BytesToBuild(shapes, object);
+    std::uint32_t first = leaves - 1;
+    for (const std::uint32_t leaf : in) {
+      Add(shapes, object, bytes, parts.leaves[leaf]);
+      first = std::min(first, (leaf + leaves - static_cast<std::uint32_t>(rank) % leaves) % leaves);
+    }
+    bytes_from[first] += bytes;
+    parts.copies += in.size();
+  });
+  std::partial_sum(bytes_from.begin(), bytes_from.end(), bytes_from.begin());
+  return bytes_from;
+}
+
+/// Who holds what: as chosen, else as many leaves each as fit. `bytes`: by leaves that each holds,
+/// of the rank with most; `least`: what is needed in any case.
+Holding Divide(const Division& division, const std::vector<std::uint64_t>& bytes,
+               std::uint64_t least, std::uint64_t allowed) {
+  const int ranks = division.holders;
+  const auto needed = [&](int each) {
+    return std::max(least, bytes[static_cast<std::size_t>(each) - 1]);
+  };
+  int each = 1;
+  if (division.replicate > 0)
+    each = std::clamp(static_cast<int>(std::lround(division.replicate * ranks)), 1, ranks);
+  else if (division.fill)
+    while (each < ranks && needed(each + 1) <= allowed) ++each;
+  RequireMemory(needed(each), allowed,
+                fmt::format("divided among {} ranks, {} {} each, the objects of one take", ranks,
+                            each, each == 1 ? "leaf" : "leaves"));
+  return Holding::Even(ranks, each);
+}
+
+/// The same for the pilot of a coupled scene.
+Holding Deal(int ranks, const std::vector<LeafObjects>& leaves, std::uint64_t least,
+             std::uint64_t allowed) {
+  Holding holding = Holding::Dealt(ranks, static_cast<std::uint32_t>(leaves.size()));
+  std::uint64_t most = least;
+  for (int rank = 0; rank < ranks; ++rank) {
+    std::uint64_t bytes = 0;
+    for (const std::uint32_t leaf : holding.LeavesOf(rank)) bytes += leaves[leaf].bytes;
+    most = std::max(most, bytes);
+  }
+  RequireMemory(
+      most, allowed,
+      fmt::format("{} leaves dealt to {} ranks, the objects of one take", leaves.size(), ranks));
+  return holding;
+}
+
+/// Objects of a rank before they are made ready.
+struct Gathered {
+  Shapes shapes;
+  std::vector<std::uint32_t> numbers;
+};
+
+/// Reads the scene, and keeps what lies in leaves that have a place. Places may be the same.
+template <class Real>
+void Gather(SceneParts<Real>& parts, const std::vector<Gathered*>& place_of) {
+  for (std::size_t leaf = 0; leaf < place_of.size(); ++leaf) {
+    if (place_of[leaf] == nullptr) continue;
+    Reserve(parts.leaves[leaf], place_of[leaf]->shapes);
+    place_of[leaf]->numbers.reserve(place_of[leaf]->shapes.objects.capacity());
+  }
+  std::vector<std::uint32_t> in;
+  parts.objects.ForEach([&](const Shapes& shapes, const Object& object, std::uint32_t number) {
+    parts.tree.LeavesOf(BoundsOf(shapes, object), in);
+    for (const std::uint32_t leaf : in) {
+      Gathered* const place = place_of[leaf];
+      if (place == nullptr || (!place->numbers.empty() && place->numbers.back() == number))
+        continue;
+      place->shapes.AddCopy(shapes, object);
+      place->numbers.push_back(number);
+    }
+  });
+}
+
+template <class Real>
+std::shared_ptr<HeldPart<Real>> BuildPart(Gathered&& gathered, const std::string& kernel) {
+  auto part = std::make_shared<HeldPart<Real>>();
+  part->model = BuildModel<Real>(std::move(gathered.shapes), HierarchyFor(kernel));
+  part->numbers = std::move(gathered.numbers);
+  part->kernel = MakeKernel(kernel, part->model);
+  return part;
+}
+
+/// Makes this rank's leaves ready. `each_leaf`: by a hierarchy of its own.
+template <class Real>
+void Build(const std::string& kernel, int rank, bool each_leaf, SceneParts<Real>& parts) {
   parts.held.assign(parts.tree.leaves(), nullptr);
   parts.model_bytes = 0;
   if (rank >= parts.holding.ranks()) return;
-  const auto build = [&](const std::vector<std::uint32_t>& leaves) {
-    const auto part = BuildPart<Real>(shapes, ObjectsOf(parts.tree, leaves), kernel);
-    for (const std::uint32_t leaf : leaves) parts.held[leaf] = part;
+  const std::vector<std::uint32_t> leaves = parts.holding.LeavesOf(rank);
+  std::vector<Gathered> gathered(each_leaf ? leaves.size() : 1);
+  std::vector<Gathered*> place_of(parts.tree.leaves());
+  for (std::size_t i = 0; i < leaves.size(); ++i)
+    place_of[leaves[i]] = &gathered[each_leaf ? i : 0];
+  Gather(parts, place_of);
+  for (Gathered& place : gathered) {
+    const auto part = BuildPart<Real>(std::move(place), kernel);
+    for (const std::uint32_t leaf : leaves)
+      if (place_of[leaf] == &place) parts.held[leaf] = part;
     parts.rounding = part->kernel->Rounding();
     part->model.ForEachArray(
         [&](const auto& array) { parts.model_bytes += array.size() * sizeof(array[0]); });
-  };
-  const std::vector<std::uint32_t> leaves = parts.holding.LeavesOf(rank);
-  if (!each_leaf) return build(leaves);
-  for (const std::uint32_t leaf : leaves) build({leaf});
+  }
 }
 
 }  // namespace
 
-/// Bytes that one rank may take, of what its node has.
 std::uint64_t AllowedBytes(const World& world, const SceneChoice& choice) {
   if (choice.memory_limit > 0) return choice.memory_limit;
-  const Node node(world.comm);
-  return AvailableBytes() / static_cast<std::uint64_t>(node.size());
+  std::uint64_t bytes = Node(world.comm).BytesForEach();
+  // All divide the scene alike.
+  MPI_Allreduce(MPI_IN_PLACE, &bytes, 1, MPI_UINT64_T, MPI_MIN, world.comm);
+  return bytes;
 }
 
 template <class Real>
@@ -121,28 +192,29 @@ SceneParts<Real> PartsForAll(const World& world, const SceneChoice& choice,
                              const std::string& kernel, Division division) {
   SceneParts<Real> parts;
   Stopwatch watch;
+  const auto leaves = static_cast<std::uint32_t>(division.coupled ? CoupledLeaves(division.holders)
+                                                                  : division.holders);
   Mark(Moment::kLoadBegins);
-  parts.scene = OnAllRanks(world, [&] {
-    Scene scene = LoadScene(choice);
-    AdaptPatches(scene, choice.patches);
-    return scene;
+  std::vector<std::uint64_t> bytes = OnAllRanks(world, [&] {
+    parts.objects = SceneObjects(choice);
+    parts.scene = parts.objects.rest();
+    Cut(leaves, parts);
+    return CountLeaves(world.rank, parts);
   });
+  // A host holds nothing, and counts as if it were the first.
+  MPI_Allreduce(MPI_IN_PLACE, bytes.data(), static_cast<int>(leaves), MPI_UINT64_T, MPI_MAX,
+                world.comm);
   parts.load_s = watch.Lap();
   watch.LapCpu();
   Mark(Moment::kBuildBegins);
   const std::uint64_t allowed = AllowedBytes(world, choice);
   OnAllRanks(world, [&] {
-    const Shapes& shapes = parts.scene.shapes;
-    for (const Object& object : shapes.objects)
-      ++parts.count[static_cast<std::size_t>(object.kind)];
-    const int leaves = division.coupled ? CoupledLeaves(division.holders) : division.holders;
-    parts.tree = ObjectTree(BoxesOf(shapes), static_cast<std::uint32_t>(leaves));
-    for (std::uint32_t leaf = 0; leaf < parts.tree.leaves(); ++leaf)
-      parts.copies += parts.tree.ObjectsIn(leaf).size();
-    parts.holding = division.coupled ? Holding::Dealt(division.holders, parts.tree.leaves())
-                                     : Divide(shapes, parts.tree, division, allowed);
-    Build(shapes, kernel, world.rank, division.coupled, parts);
-    if (!division.coupled) parts.scene.shapes = {};
+    const std::uint64_t objects =
+        std::accumulate(parts.count.begin(), parts.count.end(), std::uint64_t{0});
+    const std::uint64_t least = BoxSample::BytesFor(leaves, objects);
+    parts.holding = division.coupled ? Deal(division.holders, parts.leaves, least, allowed)
+                                     : Divide(division, bytes, least, allowed);
+    Build(kernel, world.rank, division.coupled, parts);
     return true;
   });
   parts.build_s = watch.Lap();
@@ -152,9 +224,8 @@ SceneParts<Real> PartsForAll(const World& world, const SceneChoice& choice,
 
 template <class Real>
 std::vector<LeafLoad> LoadsOf(const SceneParts<Real>& parts) {
-  std::vector<LeafLoad> loads(parts.tree.leaves());
-  for (std::uint32_t leaf = 0; leaf < parts.tree.leaves(); ++leaf)
-    loads[leaf].bytes = BytesToBuild(parts.scene.shapes, parts.tree.ObjectsIn(leaf));
+  std::vector<LeafLoad> loads;
+  for (const LeafObjects& leaf : parts.leaves) loads.push_back({0, leaf.bytes});
   return loads;
 }
 
@@ -162,7 +233,7 @@ template <class Real>
 void Hold(const World& world, Holding holding, const std::string& kernel, SceneParts<Real>& parts) {
   parts.holding = std::move(holding);
   OnAllRanks(world, [&] {
-    Build(std::exchange(parts.scene.shapes, {}), kernel, world.rank, false, parts);
+    Build(kernel, world.rank, false, parts);
     return true;
   });
 }

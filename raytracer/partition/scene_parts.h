@@ -16,7 +16,7 @@
 #include "raytracer/partition/holding.h"
 #include "raytracer/partition/object_tree.h"
 #include "raytracer/render/world.h"
-#include "raytracer/scene/load.h"
+#include "raytracer/scene/scene_objects.h"
 
 namespace stipple::raytracer {
 
@@ -28,10 +28,20 @@ struct HeldPart {
   std::unique_ptr<Kernel<Real>> kernel;
 };
 
+/// What lies in a leaf.
+struct LeafObjects {
+  std::uint64_t bytes = 0;  // that it takes until it is ready for rays, at most
+  std::array<std::uint64_t, kShapeKinds> count{};
+  std::uint64_t corners = 0;  // of polygons
+  std::uint64_t normals = 0;  // at corners
+};
+
 template <class Real>
 struct SceneParts {
-  Scene scene;  // without shapes, but those that Hold still needs
+  Scene scene;           // without shapes
+  SceneObjects objects;  // of the whole scene, on their way
   ObjectTree tree;
+  std::vector<LeafObjects> leaves;
   Holding holding;
   // By leaf; the same for all leaves of this rank, each object once, but while a pilot asks what
   // each leaf costs. Null: others hold it.
@@ -61,14 +71,15 @@ template <class Real>
 SceneParts<Real> PartsForAll(const World& world, const SceneChoice& choice,
                              const std::string& kernel, Division division);
 
-/// What each leaf of a scene takes; its work is 0. Before Hold.
+/// What each leaf of a scene takes; its work is 0.
 template <class Real>
 std::vector<LeafLoad> LoadsOf(const SceneParts<Real>& parts);
 
-/// Bytes that this rank may take for objects. Every rank calls it.
+/// Bytes that each rank may take for objects. Every rank calls it.
 std::uint64_t AllowedBytes(const World& world, const SceneChoice& choice);
 
-/// Another division of a coupled scene's leaves: every rank builds what it is to hold.
+/// Another division of a coupled scene's leaves: every rank lets go of what it holds, reads the
+/// scene again and builds what it is to hold. Errors: StoppedTogether.
 template <class Real>
 void Hold(const World& world, Holding holding, const std::string& kernel, SceneParts<Real>& parts);
 
