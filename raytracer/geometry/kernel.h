@@ -7,6 +7,7 @@
 #include <memory>
 #include <string_view>
 
+#include "raytracer/geometry/copies.h"
 #include "raytracer/geometry/model.h"
 #include "raytracer/geometry/vec.h"
 
@@ -36,6 +37,15 @@ class Kernel {
 
   /// Is any object nearer than max_t?
   virtual bool Occluded(const Ray<Real>& ray, Real max_t, TestCounts& tests) const = 0;
+
+  /// The same for a ray that others have looked at before; `repeats` counts tests that are theirs,
+  /// too.
+  virtual Hit<Real> IntersectAgain(const Ray<Real>& ray, TestCounts& tests, Repeats&) const {
+    return Intersect(ray, tests);
+  }
+  virtual bool OccludedAgain(const Ray<Real>& ray, Real max_t, TestCounts& tests, Repeats&) const {
+    return Occluded(ray, max_t, tests);
+  }
 
   /// Relative error of the distances found, from which rays' offsets from surfaces follow.
   virtual Real Rounding() const { return std::numeric_limits<Real>::epsilon(); }

@@ -123,6 +123,7 @@ Holding Deal(int ranks, const std::vector<LeafObjects>& leaves, std::uint64_t le
 struct Gathered {
   Shapes shapes;
   std::vector<std::uint32_t> numbers;
+  std::vector<LeafBits> leaves;  // of each object that lies in several; else 0
 };
 
 /// Reads the scene, and keeps what lies in leaves that have a place. Places may be the same.
@@ -132,6 +133,7 @@ void Gather(SceneParts<Real>& parts, const std::vector<Gathered*>& place_of) {
     if (place_of[leaf] == nullptr) continue;
     Reserve(parts.leaves[leaf], place_of[leaf]->shapes);
     place_of[leaf]->numbers.reserve(place_of[leaf]->shapes.objects.capacity());
+    place_of[leaf]->leaves.reserve(place_of[leaf]->shapes.objects.capacity());
   }
   std::vector<std::uint32_t> in;
   parts.objects.ForEach([&](const Shapes& shapes, const Object& object, std::uint32_t number) {
@@ -142,6 +144,9 @@ void Gather(SceneParts<Real>& parts, const std::vector<Gathered*>& place_of) {
         continue;
       place->shapes.AddCopy(shapes, object);
       place->numbers.push_back(number);
+      LeafBits leaves = 0;
+      for (const std::uint32_t one : in) leaves |= BitOf(one);
+      place->leaves.push_back(in.size() > 1 ? leaves : 0);
     }
   });
 }
@@ -151,6 +156,7 @@ std::shared_ptr<HeldPart<Real>> BuildPart(Gathered&& gathered, const std::string
   auto part = std::make_shared<HeldPart<Real>>();
   part->model = BuildModel<Real>(std::move(gathered.shapes), HierarchyFor(kernel));
   part->numbers = std::move(gathered.numbers);
+  part->copies = Copies(part->model, gathered.leaves);
   part->kernel = MakeKernel(kernel, part->model);
   return part;
 }

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "raytracer/geometry/copies.h"
 #include "raytracer/geometry/kernel.h"
 #include "raytracer/partition/holding.h"
 #include "raytracer/partition/object_tree.h"
@@ -25,6 +26,7 @@ template <class Real>
 struct HeldPart {
   Model<Real> model;
   std::vector<std::uint32_t> numbers;  // in the scene, by number in the model; ascending
+  Copies copies;                       // those that lie in further leaves
   std::unique_ptr<Kernel<Real>> kernel;
 };
 

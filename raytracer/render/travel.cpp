@@ -92,13 +92,30 @@ class RankTracerIn final : public RankTracer<Real> {
   bool Test(std::uint32_t leaf, Traveller<Real>& ray) {
     const HeldPart<Real>& part = *parts_.held[leaf];
     const std::uint64_t before = shader_.counts().Work();
+    Repeats repeats{part.copies, ray.arrived && ray.seen > 0 ? SeenElsewhere(part, ray) : 0};
     bool stopped = false;
-    if (ray.to_light)
+    if (!ray.to_light)
+      Meet(part, ray, repeats);
+    else if (repeats.seen == 0)
       stopped = part.kernel->Occluded(ray.ray, ray.t, shader_.counts().tests);
     else
-      Meet(part, ray);
+      stopped = part.kernel->OccludedAgain(ray.ray, ray.t, shader_.counts().tests, repeats);
+    shader_.counts().repeated_tests += repeats.tests;
     leaf_work_[leaf] += shader_.counts().Work() - before;
     return stopped;
+  }
+
+  /// Leaves that a ray has been through with other objects than these.
+  LeafBits SeenElsewhere(const HeldPart<Real>& part, const Traveller<Real>& ray) const {
+    LeafBits seen = 0;
+    for (std::size_t i = 0; i < way_.size(); ++i) {
+      const std::size_t ahead = i - ray.seen - 1;  // of those before the next a huge number
+      const bool through =
+          i < ray.seen || (ahead < std::numeric_limits<decltype(ray.seen_ahead)>::digits &&
+                           (ray.seen_ahead >> ahead & 1U) != 0);
+      if (through && parts_.held[way_[i].leaf].get() != &part) seen |= BitOf(way_[i].leaf);
+    }
+    return seen;
   }
 
   /// Leaves further on whose objects were tested together with those of the next.
@@ -114,8 +131,10 @@ class RankTracerIn final : public RankTracer<Real> {
   }
 
   /// Keeps what is nearer than what was met before.
-  void Meet(const HeldPart<Real>& part, Traveller<Real>& ray) {
-    const Hit<Real> hit = part.kernel->Intersect(ray.ray, shader_.counts().tests);
+  void Meet(const HeldPart<Real>& part, Traveller<Real>& ray, Repeats& repeats) {
+    TestCounts& tests = shader_.counts().tests;
+    const Hit<Real> hit = repeats.seen == 0 ? part.kernel->Intersect(ray.ray, tests)
+                                            : part.kernel->IntersectAgain(ray.ray, tests, repeats);
     if (hit.object == kNoObject) return;
     const std::uint32_t object = part.numbers[hit.object];
     if (hit.t > ray.t || (hit.t == ray.t && object >= ray.object)) return;
