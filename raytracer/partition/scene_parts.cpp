@@ -2,6 +2,7 @@
 #include "raytracer/partition/scene_parts.h"
 
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +17,10 @@
 
 namespace stipple::raytracer {
 namespace {
+
+/// What a part has of each object beside shape and model: its number, and the leaves that it lies
+/// in, in two orders.
+constexpr std::uint64_t kBytesInPart = sizeof(std::uint32_t) + 2 * sizeof(LeafBits);
 
 void Add(const Shapes& shapes, const Object& object, std::uint64_t bytes, LeafObjects& leaf) {
   leaf.bytes += bytes;
@@ -71,7 +76,7 @@ std::vector<std::uint64_t> CountLeaves(int rank, SceneParts<Real>& parts) {
   std::vector<std::uint32_t> in;
   parts.objects.ForEach([&](const Shapes& shapes, const Object& object, std::uint32_t) {
     parts.tree.LeavesOf(BoundsOf(shapes, object), in);
-    const std::uint64_t bytes = BytesToBuild(shapes, object);
+    const std::uint64_t bytes = BytesToBuild(shapes, object) + kBytesInPart;
     std::uint32_t first = leaves - 1;
     for (const std::uint32_t leaf : in) {
       Add(shapes, object, bytes, parts.leaves[leaf]);
@@ -161,6 +166,13 @@ std::shared_ptr<HeldPart<Real>> BuildPart(Gathered&& gathered, const std::string
   return part;
 }
 
+/// What was let go of lies about between what is kept, and would be counted with what comes next.
+void GiveBackMemory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
+}
+
 /// Makes this rank's leaves ready. `each_leaf`: by a hierarchy of its own.
 template <class Real>
 void Build(const std::string& kernel, int rank, bool each_leaf, SceneParts<Real>& parts) {
@@ -172,6 +184,7 @@ void Build(const std::string& kernel, int rank, bool each_leaf, SceneParts<Real>
   std::vector<Gathered*> place_of(parts.tree.leaves());
   for (std::size_t i = 0; i < leaves.size(); ++i)
     place_of[leaves[i]] = &gathered[each_leaf ? i : 0];
+  GiveBackMemory();
   Gather(parts, place_of);
   for (Gathered& place : gathered) {
     const auto part = BuildPart<Real>(std::move(place), kernel);

@@ -19,10 +19,6 @@ constexpr std::uint64_t kShapeBytes[] = {sizeof(Sphere<double>), sizeof(Cone<dou
                                          sizeof(Triangle<double>), sizeof(Polygon<double>),
                                          sizeof(Patch<double>)};
 
-/// What a divided scene has beside them of each object: its number, and in which leaves it lies, in
-/// two orders.
-constexpr std::uint64_t kPartBytes = 4 + 2 * 8;
-
 /// Of a triangle's three corners, where they are and where they are to be.
 constexpr std::uint64_t kBytesOfNormals = std::uint64_t{2} * 3 * sizeof(Vec3);
 
@@ -51,7 +47,7 @@ std::uint64_t BytesToBuild(const Shapes& shapes) {
 
 std::uint64_t BytesToBuild(const Shapes& shapes, const Object& object) {
   const auto kind = static_cast<std::size_t>(object.kind);
-  std::uint64_t bytes = kPartBytes + sizeof object + kShapeBytes[kind] + kModelBytes[kind];
+  std::uint64_t bytes = sizeof object + kShapeBytes[kind] + kModelBytes[kind];
   if (object.kind == ShapeKind::kTriangle) bytes += kBytesOfNormals;
   if (object.kind == ShapeKind::kPolygon)
     bytes += shapes.polygons[object.index].vertex_count *

@@ -14,7 +14,7 @@ namespace stipple::raytracer {
 /// Bytes that these shapes and their model take while it is built, an estimate from above.
 std::uint64_t BytesToBuild(const Shapes& shapes);
 
-/// Bytes that one of several objects takes, with its shape and its number.
+/// Bytes that one of several objects takes, with its shape.
 std::uint64_t BytesToBuild(const Shapes& shapes, const Object& object);
 
 /// Bytes that so many triangles with normals take.
