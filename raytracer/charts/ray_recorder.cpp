@@ -10,12 +10,12 @@ RayRecorder::RayRecorder(const Kernel<double>& kernel, const Scene& scene)
   for (const Light& light : scene.lights) lights_.push_back(light.position);
 }
 
-Hit<double> RayRecorder::IntersectWithin(const Ray<double>& ray, double farthest,
-                                         TestCounts& tests) const {
+Hit<double> RayRecorder::Intersect(const Ray<double>& ray, TestCounts& tests) const {
   const Vec3 from_eye = ray.origin - eye_;
   depth_ = Dot(from_eye, from_eye) == 0 ? 1 : depth_ + 1;
-  Note(depth_ == 1 ? RayKind::kEye : RayKind::kReflected, {depth_, 0}, ray, farthest);
-  return kernel_.IntersectWithin(ray, farthest, tests);
+  Note(depth_ == 1 ? RayKind::kEye : RayKind::kReflected, {depth_, 0}, ray,
+       std::numeric_limits<double>::infinity());
+  return kernel_.Intersect(ray, tests);
 }
 
 bool RayRecorder::Occluded(const Ray<double>& ray, double max_t, TestCounts& tests) const {

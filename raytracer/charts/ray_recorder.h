@@ -32,8 +32,7 @@ class RayRecorder final : public Kernel<double> {
  public:
   RayRecorder(const Kernel<double>& kernel, const Scene& scene);
 
-  Hit<double> IntersectWithin(const Ray<double>& ray, double farthest,
-                              TestCounts& tests) const override;
+  Hit<double> Intersect(const Ray<double>& ray, TestCounts& tests) const override;
   bool Occluded(const Ray<double>& ray, double max_t, TestCounts& tests) const override;
   /// Float's, so that rays start far enough from surfaces to be asked again in float: from where
   /// double lets them start, most would meet the surface that they leave.

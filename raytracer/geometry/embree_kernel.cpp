@@ -116,19 +116,16 @@ class EmbreeKernel final : public Kernel<Real> {
     rtcSetDeviceErrorFunction(device_.get(), nullptr, nullptr);
   }
 
-  [[gnu::noinline]] Hit<Real> IntersectWithin(const Ray<Real>& ray, Real farthest,
-                                              TestCounts&) const override {
-    Context<Real> context(ray);
-    RTCRayHit found;
-    constexpr float kForever = std::numeric_limits<float>::infinity();
+  [[gnu::noinline]] Hit<Real> Intersect(const Ray<Real>& ray, TestCounts&) const override {
+    return IntersectWithin(ray, std::numeric_limits<Real>::infinity());
+  }
+
+  [[gnu::noinline]] Hit<Real> IntersectAgain(const Ray<Real>& ray, Real farthest, TestCounts&,
+                                             Repeats&) const override {
     // What is exactly so far counts, too.
+    constexpr float kForever = std::numeric_limits<float>::infinity();
     const float reach = std::nextafter(static_cast<float>(farthest), kForever);
-    found.ray = EmbreeRay(ray, static_cast<Real>(reach));
-    found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    found.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(scene_.get(), &context.embree, &found);
-    const RTCHit& hit = found.hit;
-    return HitOf(found.ray.tfar, hit.geomID, hit.primID, hit.u, hit.v);
+    return IntersectWithin(ray, static_cast<Real>(reach));
   }
 
   [[gnu::noinline]] bool Occluded(const Ray<Real>& ray, Real max_t, TestCounts&) const override {
@@ -152,6 +149,17 @@ class EmbreeKernel final : public Kernel<Real> {
   }
 
  private:
+  Hit<Real> IntersectWithin(const Ray<Real>& ray, Real farthest) const {
+    Context<Real> context(ray);
+    RTCRayHit found;
+    found.ray = EmbreeRay(ray, farthest);
+    found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    found.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(scene_.get(), &context.embree, &found);
+    const RTCHit& hit = found.hit;
+    return HitOf(found.ray.tfar, hit.geomID, hit.primID, hit.u, hit.v);
+  }
+
   static void KeepMessage(void* kept, RTCError, const char* text) {
     auto& message = *static_cast<std::string*>(kept);
     if (message.empty()) message = text;

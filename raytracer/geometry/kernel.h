@@ -7,6 +7,7 @@
 #include <memory>
 #include <string_view>
 
+#include "raytracer/geometry/copies.h"
 #include "raytracer/geometry/model.h"
 #include "raytracer/geometry/vec.h"
 
@@ -32,15 +33,20 @@ class Kernel {
 
   /// Nearest object along the ray. Of objects at exactly the same distance the one with the lower
   /// number is hit, so that the answer does not depend on the order of traversal.
-  Hit<Real> Intersect(const Ray<Real>& ray, TestCounts& tests) const {
-    return IntersectWithin(ray, std::numeric_limits<Real>::infinity(), tests);
-  }
-  /// The same, of objects that are not farther than `farthest`.
-  virtual Hit<Real> IntersectWithin(const Ray<Real>& ray, Real farthest,
-                                    TestCounts& tests) const = 0;
+  virtual Hit<Real> Intersect(const Ray<Real>& ray, TestCounts& tests) const = 0;
 
   /// Is any object nearer than max_t?
   virtual bool Occluded(const Ray<Real>& ray, Real max_t, TestCounts& tests) const = 0;
+
+  /// The same for a ray that others have looked at before; `repeats` counts tests that are theirs,
+  /// too. They have met something no farther than `farthest`: what is farther need not be found.
+  virtual Hit<Real> IntersectAgain(const Ray<Real>& ray, Real /*farthest*/, TestCounts& tests,
+                                   Repeats&) const {
+    return Intersect(ray, tests);
+  }
+  virtual bool OccludedAgain(const Ray<Real>& ray, Real max_t, TestCounts& tests, Repeats&) const {
+    return Occluded(ray, max_t, tests);
+  }
 
   /// Relative error of the distances found, from which rays' offsets from surfaces follow.
   virtual Real Rounding() const { return std::numeric_limits<Real>::epsilon(); }

@@ -33,6 +33,26 @@ int LargestAxis(Vec3 v) {
   return std::abs(v.y) >= std::abs(v.z) ? 1 : 2;
 }
 
+void CopyPolygon(const Shapes& from, const Polygon<double>& polygon, std::uint32_t material,
+                 Shapes& to) {
+  const std::span vertices(from.vertices.data() + polygon.first_vertex, polygon.vertex_count);
+  std::span<const Vec3> normals;
+  if (polygon.first_normal != kNoNormals)
+    normals = {from.normals.data() + polygon.first_normal, polygon.vertex_count};
+  to.AddPolygon(vertices, normals, material);
+}
+
+void CopyTriangle(const Shapes& from, const Triangle<double>& triangle, std::uint32_t material,
+                  Shapes& to) {
+  Vec3 vertices[3];
+  for (int i = 0; i < 3; ++i)
+    vertices[i] = {triangle.corner[i][0], triangle.corner[i][1], triangle.corner[i][2]};
+  std::span<const Vec3> normals;
+  if (triangle.first_normal != kNoNormals)
+    normals = {from.normals.data() + triangle.first_normal, 3};
+  to.AddPolygon(vertices, normals, material);
+}
+
 }  // namespace
 
 Vec3 NewellNormal(std::span<const Vec3> polygon) {
@@ -86,6 +106,37 @@ void Shapes::AddPatch(std::span<const Vec3, 16> control, std::uint32_t material)
   objects.push_back({ShapeKind::kPatch, SizeOf(patches), material});
   patches.push_back({});
   std::ranges::copy(control, patches.back().control);
+}
+
+void Shapes::AddCopy(const Shapes& from, const Object& object) {
+  switch (object.kind) {
+    case ShapeKind::kSphere: {
+      const Sphere<double>& s = from.spheres[object.index];
+      return AddSphere(s.center, s.radius, object.material);
+    }
+    case ShapeKind::kCone: {
+      const Cone<double>& c = from.cones[object.index];
+      return AddCone(c.base, c.base_radius, c.apex, c.apex_radius, object.material);
+    }
+    case ShapeKind::kTriangle:
+      return CopyTriangle(from, from.triangles[object.index], object.material, *this);
+    case ShapeKind::kPolygon:
+      return CopyPolygon(from, from.polygons[object.index], object.material, *this);
+    case ShapeKind::kPatch:
+      return AddPatch(from.patches[object.index].control, object.material);
+  }
+}
+
+void Shapes::Clear() {
+  objects.clear();
+  spheres.clear();
+  cones.clear();
+  triangles.clear();
+  polygons.clear();
+  patches.clear();
+  vertices.clear();
+  outlines.clear();
+  normals.clear();
 }
 
 Bounds BoundsOf(const Shapes& shapes, const Object& object) {

@@ -96,6 +96,10 @@ struct Shapes {
   void AddPolygon(std::span<const Vec3> polygon, std::span<const Vec3> vertex_normals,
                   std::uint32_t material);
   void AddPatch(std::span<const Vec3, 16> control, std::uint32_t material);
+  /// Of other shapes.
+  void AddCopy(const Shapes& from, const Object& object);
+  /// Memory stays, for more to come.
+  void Clear();
 };
 
 /// Twice the area of a polygon, along its normal (Newell's method: right for concave outlines too).

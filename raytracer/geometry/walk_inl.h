@@ -68,13 +68,24 @@ HWY_INLINE void Keep(const TriangleHit<Real>& met, std::uint32_t object, Hit<Rea
     best = {met.t, object, met.u, met.v};
 }
 
-template <class Tests>
+/// Who is told of tests, beside the count of them: nobody, or who counts those done again.
+struct NoWatch {
+  HWY_INLINE void Tested(ShapeKind, std::uint32_t, std::uint32_t) {}
+};
+struct RepeatWatch {
+  Repeats& repeats;
+  HWY_INLINE void Tested(ShapeKind kind, std::uint32_t slot, std::uint32_t objects) {
+    repeats.tests += repeats.copies.CountIn(repeats.seen, kind, slot, objects);
+  }
+};
+
+template <class Tests, class Watch = NoWatch>
 class Walk {
  public:
   using Real = typename Tests::Number;
 
-  Walk(const Model<Real>& model, const Ray<Real>& ray)
-      : model_(model), ray_(ray), box_ray_(ReadyForBoxes(model.frame[0], ray)) {}
+  Walk(const Model<Real>& model, const Ray<Real>& ray, Watch watch = {})
+      : model_(model), ray_(ray), box_ray_(ReadyForBoxes(model.frame[0], ray)), watch_(watch) {}
 
   HWY_INLINE Hit<Real> Nearest(Real farthest, TestCounts& counts) {
     Hit<Real> best;
@@ -108,6 +119,7 @@ class Walk {
         if (Descend(tests, limit, top, at)) continue;
       } else {
         primitive_tests_ += at.Objects();
+        watch_.Tested(at.Kind(), SlotOf(at), at.Objects());
         if (NearestInLeaf(tests, at, best)) limit = box_ray_.Limit(static_cast<double>(best.t));
       }
       const std::uint64_t last = LastWithin(limit);
@@ -206,21 +218,28 @@ class Walk {
     if (kind == ShapeKind::kPatch) {
       for (std::uint32_t i = 0; i < objects; ++i) {
         ++primitive_tests_;
+        watch_.Tested(kind, first + i, 1);
         if (MeetPatch(model_, ray_, first + i, max_t).t < max_t) return true;
       }
       return false;
     }
     for (std::uint32_t done = 0; done < objects; done += kLanes) {
       primitive_tests_ += std::min(kLanes, objects - done);
+      watch_.Tested(kind, first * kLanes + done, std::min(kLanes, objects - done));
       if (tests.AnyInBlock(kind, first + done / kLanes, max_t)) return true;
     }
     return false;
+  }
+
+  HWY_INLINE static std::uint32_t SlotOf(ChildRef leaf) {
+    return leaf.Kind() == ShapeKind::kPatch ? leaf.First() : leaf.First() * kLanes;
   }
 
   const Model<Real>& model_;
   const Ray<Real>& ray_;
   const BoxRay box_ray_;
   std::uint64_t box_tests_ = 0, primitive_tests_ = 0;
+  [[no_unique_address]] Watch watch_;
 };
 
 template <class Tests>
@@ -230,15 +249,26 @@ class BvhKernel final : public Kernel<typename Tests::Number> {
 
   explicit BvhKernel(const Model<Real>& model) : model_(model) {}
 
-  [[gnu::noinline]] Hit<Real> IntersectWithin(const Ray<Real>& ray, Real farthest,
-                                              TestCounts& tests) const override {
+  [[gnu::noinline]] Hit<Real> Intersect(const Ray<Real>& ray, TestCounts& tests) const override {
     if (model_.frame.empty()) return {};
-    return Walk<Tests>(model_, ray).Nearest(farthest, tests);
+    return Walk<Tests>(model_, ray).Nearest(kMiss<Real>, tests);
   }
 
   [[gnu::noinline]] bool Occluded(const Ray<Real>& ray, Real max_t,
                                   TestCounts& tests) const override {
     return !model_.frame.empty() && Walk<Tests>(model_, ray).Any(max_t, tests);
+  }
+
+  [[gnu::noinline]] Hit<Real> IntersectAgain(const Ray<Real>& ray, Real farthest, TestCounts& tests,
+                                             Repeats& repeats) const override {
+    if (model_.frame.empty()) return {};
+    return Walk<Tests, RepeatWatch>(model_, ray, {repeats}).Nearest(farthest, tests);
+  }
+
+  [[gnu::noinline]] bool OccludedAgain(const Ray<Real>& ray, Real max_t, TestCounts& tests,
+                                       Repeats& repeats) const override {
+    return !model_.frame.empty() &&
+           Walk<Tests, RepeatWatch>(model_, ray, {repeats}).Any(max_t, tests);
   }
 
  private:

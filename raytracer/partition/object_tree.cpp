@@ -46,7 +46,8 @@ double MedianPlane(std::span<const Bounds> boxes, const std::vector<std::uint32_
 
 }  // namespace
 
-ObjectTree::ObjectTree(std::span<const Bounds> boxes, std::uint32_t leaves) {
+ObjectTree::ObjectTree(std::span<const Bounds> boxes, std::uint32_t leaves, const Bounds& scene)
+    : scene_(scene) {
   for (const Bounds& box : boxes) scene_.Include(box);
   std::vector<std::uint32_t> all(boxes.size());
   std::iota(all.begin(), all.end(), 0U);
@@ -56,9 +57,8 @@ ObjectTree::ObjectTree(std::span<const Bounds> boxes, std::uint32_t leaves) {
 std::int32_t ObjectTree::Split(std::span<const Bounds> boxes, std::vector<std::uint32_t> numbers,
                                const Bounds& cell, std::uint32_t leaves) {
   if (leaves == 1) {
-    objects_.push_back(std::move(numbers));
     cells_.push_back(cell);
-    return ~static_cast<std::int32_t>(objects_.size() - 1);
+    return ~static_cast<std::int32_t>(cells_.size() - 1);
   }
   const std::uint32_t leaves_below = leaves / 2;
   const int axis = LongestAxis(boxes, numbers, cell);
@@ -79,6 +79,25 @@ std::int32_t ObjectTree::Split(std::span<const Bounds> boxes, std::vector<std::u
   planes_[static_cast<std::size_t>(plane)].below = to_below;
   planes_[static_cast<std::size_t>(plane)].above = to_above;
   return plane;
+}
+
+void ObjectTree::LeavesOf(const Bounds& box, std::vector<std::uint32_t>& leaves) const {
+  leaves.clear();
+  std::int32_t above[kMostPlanesAbove];
+  int count = 0;
+  for (std::int32_t link = root_;;) {
+    if (link >= 0) {
+      const Plane& plane = planes_[static_cast<std::size_t>(link)];
+      link = plane.above;
+      if (!(Component(box.low, plane.axis) <= plane.at)) continue;
+      if (Component(box.high, plane.axis) > plane.at) above[count++] = plane.above;
+      link = plane.below;
+      continue;
+    }
+    leaves.push_back(static_cast<std::uint32_t>(~link));
+    if (count == 0) return;
+    link = above[--count];
+  }
 }
 
 /// At a plane `now` becomes the first side that the ray is on. True if it is on the other as well,

@@ -31,13 +31,13 @@ class ObjectTree {
  public:
   /// Without objects, in one leaf.
   ObjectTree() : ObjectTree({}, 1) {}
-  /// `boxes`: of the objects, by number. At least one leaf. Of the same boxes every rank makes the
-  /// same tree.
-  ObjectTree(std::span<const Bounds> boxes, std::uint32_t leaves);
+  /// `boxes`: of the objects, or of some of them; all lie in `scene` or in these. At least one
+  /// leaf. Of the same boxes every rank makes the same tree.
+  ObjectTree(std::span<const Bounds> boxes, std::uint32_t leaves, const Bounds& scene = {});
 
-  std::uint32_t leaves() const { return static_cast<std::uint32_t>(objects_.size()); }
-  /// Numbers of the objects that reach into a leaf, ascending.
-  const std::vector<std::uint32_t>& ObjectsIn(std::uint32_t leaf) const { return objects_[leaf]; }
+  std::uint32_t leaves() const { return static_cast<std::uint32_t>(cells_.size()); }
+  /// Replaces `leaves` by those that an object with this box reaches into, ascending.
+  void LeavesOf(const Bounds& box, std::vector<std::uint32_t>& leaves) const;
   /// The leaf's part of the scene's box.
   const Bounds& CellOf(std::uint32_t leaf) const { return cells_[leaf]; }
 
@@ -50,14 +50,16 @@ class ObjectTree {
   };
 
   friend LeafWay;
+
+  // Of a tree that halves 2^32 leaves.
+  static constexpr int kMostPlanesAbove = 32;
   std::int32_t Split(std::span<const Bounds> boxes, std::vector<std::uint32_t> numbers,
                      const Bounds& cell, std::uint32_t leaves);
 
   Bounds scene_;
   std::vector<Plane> planes_;
   std::int32_t root_ = ~0;
-  std::vector<std::vector<std::uint32_t>> objects_;  // by leaf
-  std::vector<Bounds> cells_;
+  std::vector<Bounds> cells_;  // by leaf
 };
 
 /// The leaves that a ray meets, the nearest first, found one after another as they are asked for:
@@ -86,13 +88,10 @@ class LeafWay {
   bool Cross(const ObjectTree::Plane& plane, Part& now, Part& later) const;
   void FindNext();
 
-  // Of a tree that halves 2^32 leaves.
-  static constexpr int kMostPlanesAbove = 32;
-
   const ObjectTree* tree_ = nullptr;
   Ray<double> ray_{};
   double margin_ = 0, slack_ = 0;
-  std::array<Part, kMostPlanesAbove + 1> waiting_;  // the next one last
+  std::array<Part, ObjectTree::kMostPlanesAbove + 1> waiting_;  // the next one last
   int count_ = 0;
   std::uint64_t planes_ = 0;
   std::vector<LeafOnWay> leaves_;

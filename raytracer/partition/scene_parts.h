@@ -10,11 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "raytracer/geometry/copies.h"
 #include "raytracer/geometry/kernel.h"
 #include "raytracer/partition/holding.h"
 #include "raytracer/partition/object_tree.h"
 #include "raytracer/render/world.h"
-#include "raytracer/scene/load.h"
+#include "raytracer/scene/scene_objects.h"
 
 namespace stipple::raytracer {
 
@@ -23,13 +24,27 @@ template <class Real>
 struct HeldPart {
   Model<Real> model;
   std::vector<std::uint32_t> numbers;  // in the scene, by number in the model; ascending
+  Copies copies;                       // that others may have
   std::unique_ptr<Kernel<Real>> kernel;
 };
 
+/// What lies in a leaf.
+struct LeafObjects {
+  std::uint64_t bytes = 0;  // that it takes until it is ready for rays, at most
+  std::array<std::uint64_t, kShapeKinds> count{};
+  std::uint64_t corners = 0;  // of polygons
+  std::uint64_t normals = 0;  // at corners
+};
+
+/// By leaf.
+std::vector<std::uint64_t> BytesOf(const std::vector<LeafObjects>& leaves);
+
 template <class Real>
 struct SceneParts {
-  Scene scene;  // without shapes, but those that Hold still needs
+  Scene scene;           // without shapes
+  SceneObjects objects;  // of the whole scene, on their way
   ObjectTree tree;
+  std::vector<LeafObjects> leaves;
   Holding holding;
   std::unique_ptr<HeldPart<Real>> here;
   std::uint64_t most_bytes = 0;                    // that a rank may hold of a coupled scene
@@ -54,11 +69,8 @@ template <class Real>
 SceneParts<Real> PartsForAll(const World& world, const SceneChoice& choice,
                              const std::string& kernel, Division division);
 
-/// Bytes of each leaf's objects, ready for rays. Before Hold.
-template <class Real>
-std::vector<std::uint64_t> LeafBytes(const SceneParts<Real>& parts);
-
-/// Another division of a coupled scene's leaves: every rank builds what it is to hold.
+/// Another division of a coupled scene's leaves: every rank lets go of what it holds, reads the
+/// scene again and builds what it is to hold. Errors: StoppedTogether.
 template <class Real>
 void Hold(const World& world, Holding holding, const std::string& kernel, SceneParts<Real>& parts);
 

@@ -71,7 +71,7 @@ Forecast Couple(const World& world, ShadingChoice shading, const std::string& ke
   const int ranks = parts.holding.ranks();
   const Ways ways = PilotWays(world, shading, parts);
   // With all room that PartsForAll needed.
-  const Coupling coupling(ranks, LeafBytes(parts), ways, parts.most_bytes);
+  const Coupling coupling(ranks, BytesOf(parts.leaves), ways, parts.most_bytes);
   Hold(world, Agree(world, coupling, ranks, parts.tree.leaves()), kernel, parts);
   return world.rank == 0 ? Foretell(parts.holding, ways) : Forecast{};
 }

@@ -18,7 +18,12 @@ class RankTracerIn final : public RankTracer<Real> {
         shader_(parts.scene, shading, parts.rounding),
         pilot_(pilot),
         here_(*parts.here),
-        holds_all_(parts.holding.LeavesOf(rank).size() == parts.tree.leaves()) {}
+        holds_all_(parts.holding.LeavesOf(rank).size() == parts.tree.leaves()) {
+    for (int holder = 0; holder < parts.holding.ranks(); ++holder) {
+      LeafBits& held = held_by_.emplace_back(0);
+      for (const std::uint32_t leaf : parts.holding.LeavesOf(holder)) held |= BitOf(leaf);
+    }
+  }
 
   void Begin(RasterPoint point, std::vector<Traveller<Real>>& rays, RayResult& found) override {
     shader_.counts().eye_rays += eye_rays_.count();
@@ -109,9 +114,24 @@ class RankTracerIn final : public RankTracer<Real> {
 
   /// Tests all that is held. Does something stand before the ray's light?
   bool Test(Traveller<Real>& ray) {
-    if (ray.to_light) return here_.kernel->Occluded(ray.ray, ray.t, shader_.counts().tests);
-    Meet(ray);
-    return false;
+    TestCounts& tests = shader_.counts().tests;
+    Repeats repeats{here_.copies, SeenElsewhere(ray)};
+    bool stopped = false;
+    if (!ray.to_light)
+      Meet(ray, repeats);
+    else if (repeats.seen == 0)
+      stopped = here_.kernel->Occluded(ray.ray, ray.t, tests);
+    else
+      stopped = here_.kernel->OccludedAgain(ray.ray, ray.t, tests, repeats);
+    shader_.counts().repeated_tests += repeats.tests;
+    return stopped;
+  }
+
+  /// What those hold who have tested all they hold for this ray.
+  LeafBits SeenElsewhere(const Traveller<Real>& ray) const {
+    LeafBits seen = 0;
+    for (const std::uint16_t rank : ray.passed.ranks()) seen |= held_by_[rank];
+    return seen;
   }
 
   static Vec3 Wide(Vec<Real> v) {
@@ -119,8 +139,11 @@ class RankTracerIn final : public RankTracer<Real> {
   }
 
   /// Keeps what is nearer than what was met before.
-  void Meet(Traveller<Real>& ray) {
-    const Hit<Real> hit = here_.kernel->IntersectWithin(ray.ray, ray.t, shader_.counts().tests);
+  void Meet(Traveller<Real>& ray, Repeats& repeats) {
+    TestCounts& tests = shader_.counts().tests;
+    const Hit<Real> hit = repeats.seen == 0
+                              ? here_.kernel->Intersect(ray.ray, tests)
+                              : here_.kernel->IntersectAgain(ray.ray, ray.t, tests, repeats);
     if (hit.object == kNoObject) return;
     const std::uint32_t object = here_.numbers[hit.object];
     if (hit.t > ray.t || (hit.t == ray.t && object >= ray.object)) return;
@@ -196,6 +219,7 @@ class RankTracerIn final : public RankTracer<Real> {
   std::vector<std::uint32_t> ways_;
   const bool pilot_;
   const HeldPart<Real>& here_;
+  std::vector<LeafBits> held_by_;  // by rank
   const bool holds_all_;
 };
 

@@ -40,7 +40,7 @@ Matrix TurnTo(Vec3 direction) {
 }
 
 struct Flake {
-  Shapes& shapes;
+  ShapeStream& shapes;
   std::array<Vec3, 9> directions = ChildDirections();
 
   void Add(Vec3 center, double radius, Vec3 direction, int levels_left) {
@@ -59,20 +59,19 @@ struct Flake {
 
 double BallsObjects(double size) { return 1 + (std::pow(9, size + 1) - 1) / 8; }
 
-Scene Balls(int size) {
+Scene Balls(int size, const TakeShapes& take) {
   Scene scene;
+  ShapeStream shapes(scene.shapes, take);
   scene.background = kSpdBackground;
   scene.view = {{2.1, 1.3, 1.7}, {0, 0, 0}, {0, 0, 1}, 45, 0.01, {512, 512}};
   scene.lights = {{{4, 3, 2}}, {{1, -4, 4}}, {{-3, 1, 5}}};
   scene.materials = {{{1, 0.75, 0.33}, 0.8, 0, kMatteShine, 0, 1},
                      {{1, 0.9, 0.7}, 0.5, 0.5, 3.0827, 0, 1}};
-  const auto objects = static_cast<std::size_t>(BallsObjects(size));
-  scene.shapes.objects.reserve(objects);
-  scene.shapes.spheres.reserve(objects);
+  shapes.Expect(static_cast<std::size_t>(BallsObjects(size)) - 1, 0, 1);
   const double f = kFloorHalf;
   const Vec3 floor[] = {{f, f, -0.5}, {-f, f, -0.5}, {-f, -f, -0.5}, {f, -f, -0.5}};
-  scene.shapes.AddPolygon(floor, {}, 0);
-  Flake{scene.shapes}.Add({0, 0, 0}, kRootRadius, {0, 0, 1}, size);
+  shapes.AddPolygon(floor, {}, 0);
+  Flake{shapes}.Add({0, 0, 0}, kRootRadius, {0, 0, 1}, size);
   return scene;
 }
 

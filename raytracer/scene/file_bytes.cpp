@@ -11,15 +11,32 @@
 #include <bit>
 #include <cerrno>
 #include <cstring>
+#include <limits>
+#include <memory>
 
 #include "raytracer/errors.h"
 
 namespace stipple::raytracer {
 namespace {
 
-constexpr std::size_t kMostRead = std::size_t{1} << 26;      // at once; some systems refuse 2^31
-constexpr std::size_t kHashedAtOnce = std::size_t{1} << 18;  // a multiple of Hash's block
-constexpr std::uint64_t kFactor = 0x9e3779b97f4a7c15;        // odd, so that it has an inverse
+constexpr std::size_t kMostRead = std::size_t{1} << 26;  // at once; some systems refuse 2^31
+// Multiples of Hash's block.
+constexpr std::size_t kHashedAtOnce = std::size_t{1} << 18;
+constexpr std::size_t kWindow = std::size_t{1} << 16;
+constexpr std::uint64_t kFactor = 0x9e3779b97f4a7c15;  // odd, so that it has an inverse
+
+/// Reads until `place` is full or the file ends. Returns the bytes read, or what went wrong in
+/// errno and nothing.
+std::optional<std::size_t> ReadFully(int file, std::span<char> place) {
+  std::size_t size = 0;
+  while (size < place.size()) {
+    const ssize_t count = read(file, place.data() + size, std::min(place.size() - size, kMostRead));
+    if (count == 0) break;
+    if (count > 0) size += static_cast<std::size_t>(count);
+    if (count < 0 && errno != EINTR) return std::nullopt;
+  }
+  return size;
+}
 
 /// An open file, closed at the end.
 struct Descriptor {
@@ -30,24 +47,15 @@ struct Descriptor {
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
 
+  bool Regular() const {
+    struct stat status;
+    return fstat(number, &status) == 0 && S_ISREG(status.st_mode);
+  }
   std::size_t Size() const {
     struct stat status;
     return fstat(number, &status) == 0 && S_ISREG(status.st_mode)
                ? static_cast<std::size_t>(status.st_size)
                : 0;
-  }
-  /// Reads until `place` is full or the file ends. Returns the bytes read, or what went wrong in
-  /// errno and nothing.
-  std::optional<std::size_t> Read(std::span<char> place) const {
-    std::size_t size = 0;
-    while (size < place.size()) {
-      const ssize_t count =
-          read(number, place.data() + size, std::min(place.size() - size, kMostRead));
-      if (count == 0) break;
-      if (count > 0) size += static_cast<std::size_t>(count);
-      if (count < 0 && errno != EINTR) return std::nullopt;
-    }
-    return size;
   }
 
   int number;
@@ -55,22 +63,39 @@ struct Descriptor {
 
 }  // namespace
 
-FileText::FileText(const std::string& path) {
-  const Descriptor file(path);
+Text::Text(const std::string& path, std::string_view all) : path_(path), window_(all) {
+  if (path.empty()) return;
+  Descriptor file(path);
   if (file.number < 0)
     throw InputError(path, 0, fmt::format("cannot be read: {}", std::strerror(errno)));
-  // One byte more than the file has, so that its end is met without growing.
-  std::size_t room = file.Size() + 1;
-  for (;;) {
-    auto more = std::make_unique_for_overwrite<char[]>(room);
-    std::copy_n(text_.get(), size_, more.get());
-    text_ = std::move(more);
-    const std::optional<std::size_t> count = file.Read({text_.get() + size_, room - size_});
-    if (!count) throw InputError(path, 0, fmt::format("cannot be read: {}", std::strerror(errno)));
-    size_ += *count;
-    if (size_ < room) return;
-    room = 2 * room + kHashedAtOnce;
-  }
+  behind_ = file.Regular() ? file.Size() : std::numeric_limits<std::size_t>::max() / 2;
+  file_ = std::exchange(file.number, -1);
+  Move(0);
+}
+
+Text::~Text() { Close(); }
+
+void Text::Close() {
+  if (file_ >= 0) close(file_);
+  file_ = -1;
+}
+
+void Text::Move(std::size_t first) {
+  window_.remove_prefix(first);
+  if (WindowReachesEnd()) return;
+  const std::size_t kept = window_.size();
+  std::ranges::copy(window_, shown_.begin());
+  // As much again, so that what does not fit into a window is not copied often.
+  const std::size_t more = std::max(kWindow, kept / kWindow * kWindow);
+  shown_.resize(kept + more);
+  const std::span<char> place(shown_.data() + kept, more);
+  const std::optional<std::size_t> count = ReadFully(file_, place);
+  if (!count) throw InputError(path_, 0, fmt::format("cannot be read: {}", std::strerror(errno)));
+  hash_.Add(std::as_bytes(place.first(*count)));
+  window_ = {shown_.data(), kept + *count};
+  read_ += *count;
+  behind_ -= std::min(behind_, *count);
+  if (*count < more) Close(), behind_ = 0;
 }
 
 std::optional<Hash> Hash::OfFile(const std::string& path, std::size_t least) {
@@ -79,7 +104,7 @@ std::optional<Hash> Hash::OfFile(const std::string& path, std::size_t least) {
   const auto part = std::make_unique_for_overwrite<char[]>(kHashedAtOnce);
   Hash hash;
   for (;;) {
-    const std::optional<std::size_t> count = file.Read({part.get(), kHashedAtOnce});
+    const std::optional<std::size_t> count = ReadFully(file.number, {part.get(), kHashedAtOnce});
     if (!count) return std::nullopt;
     hash.Add(std::as_bytes(std::span(part.get(), *count)));
     if (*count < kHashedAtOnce) return hash;

@@ -1,34 +1,19 @@
 // SPDX-License-Identifier: MIT
-// Files as bytes: read at once, mapped read-only, and told apart by a hash.
+// Files as bytes: read a window at a time, mapped read-only, and told apart by a hash.
 #ifndef STIPPLE_RAYTRACER_SCENE_FILE_BYTES_H
 #define STIPPLE_RAYTRACER_SCENE_FILE_BYTES_H
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace stipple::raytracer {
-
-/// All of a file, which may be a pipe too. It is read, not mapped: a file that somebody shortens
-/// meanwhile then gives a message and not a signal.
-class FileText {
- public:
-  FileText() = default;
-  /// Errors: InputError.
-  explicit FileText(const std::string& path);
-
-  std::string_view view() const { return {text_.get(), size_}; }
-
- private:
-  std::unique_ptr<char[]> text_;
-  std::size_t size_ = 0;
-};
 
 /// A file's bytes, read-only, in the page cache that all processes of a computer share.
 class MappedFile {
@@ -70,6 +55,41 @@ class Hash {
 
   Lanes lanes_{1, 2, 3, 4, 5, 6, 7, 8};
   std::uint64_t length_ = 0;
+};
+
+/// A text as one who reads it from beginning to end sees it: through a window that moves on. A file
+/// may be a pipe. It is read, not mapped: a file that somebody shortens meanwhile then gives a
+/// message and not a signal.
+class Text {
+ public:
+  /// Errors: InputError.
+  static Text OfFile(const std::string& path) { return Text(path, {}); }
+  static Text InMemory(std::string_view all) { return Text({}, all); }
+  ~Text();
+  Text(const Text&) = delete;
+  Text& operator=(const Text&) = delete;
+
+  std::string_view window() const { return window_; }
+  bool WindowReachesEnd() const { return file_ < 0; }
+  /// The window begins at what was its byte `first`, and reaches farther than before if the text
+  /// does. Errors: InputError.
+  void Move(std::size_t first);
+  /// Bytes that follow the window, if that is known, or more.
+  std::size_t MostBytesBehind() const { return behind_; }
+  /// Of a file: of what has come into the window so far, and its size.
+  const Hash& hash() const { return hash_; }
+  std::size_t bytes_read() const { return read_; }
+
+ private:
+  Text(const std::string& path, std::string_view all);
+  void Close();
+
+  std::string path_;
+  int file_ = -1;
+  std::size_t behind_ = 0, read_ = 0;
+  std::vector<char> shown_;
+  std::string_view window_;
+  Hash hash_;
 };
 
 }  // namespace stipple::raytracer

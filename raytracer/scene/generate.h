@@ -8,16 +8,18 @@
 #include <cstdint>
 #include <string_view>
 
+#include "raytracer/geometry/shape_stream.h"
 #include "raytracer/scene/scene.h"
 
 namespace stipple::raytracer {
 
-Scene Balls(int size);
-Scene Rings(int size);
-Scene Teapot(int size);
-Scene Tree(int size);
+// `take` gets the objects while they are made; what it leaves is in the scene.
+Scene Balls(int size, const TakeShapes& take = {});
+Scene Rings(int size, const TakeShapes& take = {});
+Scene Teapot(int size, const TakeShapes& take = {});
+Scene Tree(int size, const TakeShapes& take = {});
 /// The 32 patches of the pot, on a board of size x size squares.
-Scene TeapotPatches(int size);
+Scene TeapotPatches(int size, const TakeShapes& take = {});
 
 /// Objects in each scene, as a real number so that absurd sizes do not overflow.
 double BallsObjects(double size);
@@ -41,7 +43,7 @@ View RingsAboveView(int size);
 
 struct Generator {
   std::string_view name;
-  Scene (*scene)(int size);
+  Scene (*scene)(int size, const TakeShapes& take);
   double (*objects)(double size);
   int smallest;
   int usual;  // the size whose statistics SPD publishes

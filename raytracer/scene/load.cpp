@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
+#include <utility>
 
 #include "raytracer/errors.h"
-#include "raytracer/scene/file_bytes.h"
-#include "raytracer/scene/generate.h"
 #include "raytracer/scene/nff.h"
 
 namespace stipple::raytracer {
@@ -60,11 +60,52 @@ bool IsFile(const SceneChoice& choice) {
   return true;
 }
 
-Scene SceneFrom(const SceneChoice& choice, std::string_view text) {
-  const Generator* const generator = FindGenerator(choice.scene);
-  Scene scene = generator != nullptr ? generator->scene(SizeOf(*generator, choice.size))
-                                     : ParseNff(text, choice.scene);
-  if (choice.object_limit > 0) LimitObjects(scene, choice.object_limit);
+void RequireToReadAgain(const SceneChoice& choice) {
+  std::error_code no_matter;
+  if (!IsFile(choice) || std::filesystem::is_regular_file(choice.scene, no_matter)) return;
+  if (std::filesystem::exists(choice.scene, no_matter))
+    throw InputError(choice.scene, 0, "is read more than once here, which takes a file that stays");
+}
+
+SceneStream::SceneStream(const SceneChoice& choice) : choice_(choice) {
+  if (choice.object_limit == 0) return;
+  RequireToReadAgain(choice);
+  SizesSeen sizes(choice.object_limit);
+  ReadAll([&](Shapes& added) {
+    sizes.See(added);
+    added.Clear();
+  });
+  largest_ = sizes.Largest();
+}
+
+Scene SceneStream::ReadAll(const TakeShapes& take) {
+  Scene scene;
+  if (!IsFile(choice_)) {
+    const Generator& generator = *FindGenerator(choice_.scene);
+    scene = generator.scene(SizeOf(generator, choice_.size), take);
+  } else {
+    Text text = Text::OfFile(choice_.scene);
+    scene = ReadNff(text, choice_.scene, take);
+    if (bytes_ > 0 && text.hash().Value() != hash_.Value())
+      throw InputError(choice_.scene, 0, "has changed while it was read again");
+    hash_ = text.hash();
+    bytes_ = text.bytes_read();
+  }
+  if (take) take(scene.shapes);
+  return scene;
+}
+
+Scene SceneStream::Read(const TakeShapes& take) {
+  if (!largest_) return ReadAll(take);
+  LargestOnly largest = *largest_;
+  Shapes kept;
+  Scene scene = ReadAll([&](Shapes& added) {
+    for (const Object& object : added.objects)
+      if (largest.Keeps(added, object)) kept.AddCopy(added, object);
+    added.Clear();
+    if (take) take(kept);
+  });
+  scene.shapes = std::move(kept);
   return scene;
 }
 
@@ -75,8 +116,7 @@ View ViewOf(const SceneChoice& choice, const View& own) {
 }
 
 Scene LoadScene(const SceneChoice& choice) {
-  const FileText text = IsFile(choice) ? FileText(choice.scene) : FileText();
-  Scene scene = SceneFrom(choice, text.view());
+  Scene scene = SceneStream(choice).Read({});
   scene.view = ViewOf(choice, scene.view);
   return scene;
 }

@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <limits>
 #include <string>
 
 #include "raytracer/errors.h"
@@ -21,6 +19,9 @@ constexpr std::uint64_t kShapeBytes[] = {sizeof(Sphere<double>), sizeof(Cone<dou
                                          sizeof(Triangle<double>), sizeof(Polygon<double>),
                                          sizeof(Patch<double>)};
 
+/// Of a triangle's three corners, where they are and where they are to be.
+constexpr std::uint64_t kBytesOfNormals = std::uint64_t{2} * 3 * sizeof(Vec3);
+
 double Megabytes(std::uint64_t bytes) { return static_cast<double>(bytes) * 1e-6; }
 
 }  // namespace
@@ -28,40 +29,35 @@ double Megabytes(std::uint64_t bytes) { return static_cast<double>(bytes) * 1e-6
 std::uint64_t BytesToBuild(const Shapes& shapes) {
   std::uint64_t bytes = 0;
   const auto take = [&bytes](const auto& list) { bytes += list.capacity() * sizeof(list[0]); };
+  const auto build = [&](ShapeKind kind, const auto& list) {
+    take(list);
+    bytes += list.size() * kModelBytes[static_cast<std::size_t>(kind)];
+  };
+  build(ShapeKind::kSphere, shapes.spheres);
+  build(ShapeKind::kCone, shapes.cones);
+  build(ShapeKind::kTriangle, shapes.triangles);
+  build(ShapeKind::kPolygon, shapes.polygons);
+  build(ShapeKind::kPatch, shapes.patches);
   take(shapes.objects);
-  take(shapes.spheres);
-  take(shapes.cones);
-  take(shapes.triangles);
-  take(shapes.polygons);
-  take(shapes.patches);
   take(shapes.vertices);
   take(shapes.outlines);
   take(shapes.normals);
-  for (const Object& object : shapes.objects)
-    bytes += kModelBytes[static_cast<std::size_t>(object.kind)];
   return bytes + shapes.normals.size() * sizeof(Vec3);
 }
 
-std::uint64_t AvailableBytes() {
-  std::ifstream file("/proc/meminfo");
-  std::string word;
-  while (file >> word)
-    if (std::uint64_t kib = 0; word == "MemAvailable:" && file >> kib) return kib * 1024;
-  return std::numeric_limits<std::uint64_t>::max();
+std::uint64_t BytesToBuild(const Shapes& shapes, const Object& object) {
+  const auto kind = static_cast<std::size_t>(object.kind);
+  std::uint64_t bytes = sizeof object + kShapeBytes[kind] + kModelBytes[kind];
+  if (object.kind == ShapeKind::kTriangle) bytes += kBytesOfNormals;
+  if (object.kind == ShapeKind::kPolygon)
+    bytes += shapes.polygons[object.index].vertex_count *
+             (3 * sizeof(Vec3) + sizeof(OutlinePoint<double>));
+  return bytes;
 }
 
-std::uint64_t BytesToBuild(const Shapes& shapes, std::span<const std::uint32_t> numbers) {
-  std::uint64_t bytes = 0;
-  for (const std::uint32_t number : numbers) {
-    const Object& object = shapes.objects[number];
-    const auto kind = static_cast<std::size_t>(object.kind);
-    bytes += sizeof object + kShapeBytes[kind] + kModelBytes[kind];
-    if (object.kind == ShapeKind::kTriangle) bytes += 2 * 3 * sizeof(Vec3);
-    if (object.kind == ShapeKind::kPolygon)
-      bytes += shapes.polygons[object.index].vertex_count *
-               (3 * sizeof(Vec3) + sizeof(OutlinePoint<double>));
-  }
-  return bytes;
+std::uint64_t BytesOfTriangles(std::uint64_t triangles) {
+  constexpr auto kKind = static_cast<std::size_t>(ShapeKind::kTriangle);
+  return triangles * (sizeof(Object) + kShapeBytes[kKind] + kModelBytes[kKind] + kBytesOfNormals);
 }
 
 void RequireMemory(std::uint64_t needed, std::uint64_t allowed, const std::string& what) {
@@ -72,9 +68,23 @@ void RequireMemory(std::uint64_t needed, std::uint64_t allowed, const std::strin
                   what, Megabytes(needed), Megabytes(allowed)));
 }
 
-void RequireMemory(const Shapes& shapes, std::uint64_t limit) {
-  RequireMemory(BytesToBuild(shapes), limit > 0 ? limit : AvailableBytes(),
-                fmt::format("{} objects take", shapes.objects.size()));
+void RequireMemory(const Shapes& shapes, std::uint64_t allowed) {
+  FittingShapes(allowed).Require(shapes);
+}
+
+void FittingShapes::Take(Shapes& added) {
+  if (bytes_ > 0 || BytesToBuild(added) > allowed_) Count(added);
+}
+
+void FittingShapes::Count(Shapes& added) {
+  for (const Object& object : added.objects) bytes_ += BytesToBuild(added, object);
+  objects_ += added.objects.size();
+  added = {};
+}
+
+void FittingShapes::Require(const Shapes& rest) const {
+  RequireMemory(bytes_ + BytesToBuild(rest), allowed_,
+                fmt::format("{} objects take", objects_ + rest.objects.size()));
 }
 
 }  // namespace stipple::raytracer

@@ -25,12 +25,17 @@
 #include <string>
 #include <string_view>
 
+#include "raytracer/geometry/shape_stream.h"
+#include "raytracer/scene/file_bytes.h"
 #include "raytracer/scene/scene.h"
 
 namespace stipple::raytracer {
 
 /// Errors: InputError with the line of the token that is wrong.
 Scene ReadNff(const std::string& path);
+
+/// Objects go to `take` while they are read; what it leaves is in the scene. `name`, as below.
+Scene ReadNff(Text& text, std::string_view name, const TakeShapes& take);
 
 /// `name` stands in messages where a file's name would.
 Scene ParseNff(std::string_view text, std::string_view name);

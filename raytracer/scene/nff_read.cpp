@@ -29,7 +29,9 @@ struct MaterialHash {
 
 class NffReader {
  public:
-  NffReader(std::string_view text, std::string_view name) : tokens_(text, name) {}
+  /// `take` gets the objects while they are read; what it leaves is in the scene.
+  NffReader(Text& text, std::string_view name, const TakeShapes& take)
+      : tokens_(text, name), shapes_(scene_.shapes, take) {}
 
   Scene Read() {
     while (!tokens_.AtEnd()) ReadEntity();
@@ -57,9 +59,12 @@ class NffReader {
         {"v", &NffReader::ReadView},   {"b", &NffReader::ReadBackground},
         {"l", &NffReader::ReadLight}};
     entity_line_ = tokens_.line();
-    const std::string_view token = tokens_.Take();
-    for (const Entity& entity : kEntities)
-      if (entity.token == token) return (this->*entity.read)();
+    const std::string_view token = tokens_.Peek();
+    for (const Entity& entity : kEntities) {
+      if (entity.token != token) continue;
+      tokens_.Take();
+      return (this->*entity.read)();
+    }
     FailEntity(fmt::format("unknown entity '{}'; known are v b l f s c p pp bezier", Shown(token)));
   }
 
@@ -71,7 +76,7 @@ class NffReader {
       bool seen = false;
     };
     Part parts[] = {{"from"}, {"at"}, {"up"}, {"angle"}, {"resolution"}};
-    for (std::string_view part = tokens_.Peek(); ReadViewPart(part); part = tokens_.Peek())
+    for (std::string part(tokens_.Peek()); ReadViewPart(part); part = tokens_.Peek())
       for (Part& needed : parts) needed.seen = needed.seen || needed.name == part;
     std::string missing;
     for (const Part& part : parts)
@@ -144,7 +149,7 @@ class NffReader {
     const Vec3 center = tokens_.Vector("the sphere's centre");
     const double radius = tokens_.Number("the sphere's radius");
     Check(ProblemOfSphere(center, radius));
-    scene_.shapes.AddSphere(center, radius, CurrentMaterial());
+    shapes_.AddSphere(center, radius, CurrentMaterial());
   }
 
   void ReadCone() {
@@ -153,7 +158,7 @@ class NffReader {
     const Vec3 apex = tokens_.Vector("the cone's apex");
     const double apex_radius = tokens_.Number("the cone's apex radius");
     Check(ProblemOfCone(base, base_radius, apex, apex_radius));
-    scene_.shapes.AddCone(base, base_radius, apex, apex_radius, CurrentMaterial());
+    shapes_.AddCone(base, base_radius, apex, apex_radius, CurrentMaterial());
   }
 
   void ReadPlain() { ReadPolygon(false); }
@@ -174,7 +179,7 @@ class NffReader {
       if (with_normals) normals_.push_back(ReadNormal());
     }
     Check(ProblemOfPolygon(vertices_));
-    scene_.shapes.AddPolygon(vertices_, normals_, CurrentMaterial());
+    shapes_.AddPolygon(vertices_, normals_, CurrentMaterial());
   }
 
   Vec3 ReadNormal() {
@@ -190,7 +195,7 @@ class NffReader {
     std::array<Vec3, 16> control;
     for (Vec3& point : control) point = tokens_.Vector("the patch's control point");
     Check(ProblemOfPatch(control));
-    scene_.shapes.AddPatch(control, CurrentMaterial());
+    shapes_.AddPatch(control, CurrentMaterial());
   }
 
   /// Files that repeat a fill before each object have as many materials as differ.
@@ -220,6 +225,7 @@ class NffReader {
   long entity_line_ = 1;
   long view_line_ = 0, background_line_ = 0;  // 0: none yet
   Scene scene_;
+  ShapeStream shapes_;
   std::unordered_map<Material, std::uint32_t, MaterialHash> numbers_;
   std::uint32_t material_ = 0;  // of the objects that follow
   std::vector<Vec3> vertices_, normals_;
@@ -227,15 +233,23 @@ class NffReader {
 
 }  // namespace
 
-Scene ParseNff(std::string_view text, std::string_view name) {
-  return NffReader(text, name).Read();
+Scene ReadNff(Text& text, std::string_view name, const TakeShapes& take) {
+  return NffReader(text, name, take).Read();
 }
 
-Scene ReadNff(const std::string& path) { return ParseNff(FileText(path).view(), path); }
+Scene ParseNff(std::string_view text, std::string_view name) {
+  Text all = Text::InMemory(text);
+  return ReadNff(all, name, {});
+}
+
+Scene ReadNff(const std::string& path) {
+  Text text = Text::OfFile(path);
+  return ReadNff(text, path, {});
+}
 
 View ReadNffView(const std::string& path) {
-  const FileText text(path);
-  return NffReader(text.view(), path).ReadUpToView();
+  Text text = Text::OfFile(path);
+  return NffReader(text, path, {}).ReadUpToView();
 }
 
 }  // namespace stipple::raytracer

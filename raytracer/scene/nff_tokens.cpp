@@ -16,6 +16,8 @@ namespace {
 
 constexpr double kLargest = 1e30;
 constexpr std::size_t kShownCharacters = 40;
+// The window is moved before less of it is left.
+constexpr std::size_t kRoomForToken = 1024;
 
 bool IsBlank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
@@ -29,8 +31,9 @@ std::string Shown(std::string_view token) {
   return token.size() > kShownCharacters ? shown + "..." : shown;
 }
 
-NffTokens::NffTokens(std::string_view text, std::string_view name) : text_(text), name_(name) {
-  if (text_.starts_with("\xef\xbb\xbf")) text_.remove_prefix(3);
+NffTokens::NffTokens(Text& text, std::string_view name)
+    : text_(text), window_(text.window()), name_(name) {
+  if (window_.starts_with("\xef\xbb\xbf")) position_ = 3;
   Skip();
 }
 
@@ -39,48 +42,66 @@ void NffTokens::Fail(long line, std::string_view problem) const {
 }
 
 void NffTokens::Skip() {
+  SkipInWindow();
+  if (window_.size() - position_ < kRoomForToken && !text_.WindowReachesEnd()) [[unlikely]] {
+    do MoveWindow(), SkipInWindow();
+    while (AtEnd() && !text_.WindowReachesEnd());
+  }
+}
+
+void NffTokens::MoveWindow() {
+  text_.Move(position_);
+  window_ = text_.window();
+  position_ = 0;
+}
+
+void NffTokens::SkipInWindow() {
   std::size_t next = position_;
-  long line = line_;
-  while (next < text_.size() && EndsToken(text_[next])) {
-    if (text_[next] == '#') {
-      while (next < text_.size() && text_[next] != '\n' && text_[next] != '\r') ++next;
+  long line = line_met_;
+  while (next < window_.size() && (in_comment_ || EndsToken(window_[next]))) {
+    if (in_comment_ || window_[next] == '#') {
+      while (next < window_.size() && window_[next] != '\n' && window_[next] != '\r') ++next;
+      in_comment_ = next == window_.size();
       continue;
     }
-    if (text_[next] == '\n') ++line;
+    if (window_[next] == '\n') ++line;
     ++next;
   }
   position_ = next;
-  if (next < text_.size())
+  line_met_ = line;
+  if (next < window_.size())
     line_ = line;  // at the end the last token's line says more than an empty line
 }
 
-std::string_view NffTokens::Peek() const {
-  std::size_t end = position_;
-  while (end < text_.size() && !EndsToken(text_[end])) ++end;
-  return text_.substr(position_, end - position_);
+std::string_view NffTokens::Peek() {
+  std::size_t length = 0;
+  for (;;) {
+    while (position_ + length < window_.size() && !EndsToken(window_[position_ + length])) ++length;
+    if (position_ + length < window_.size() || text_.WindowReachesEnd())
+      return window_.substr(position_, length);
+    MoveWindow();
+  }
 }
 
-std::string_view NffTokens::Take() {
-  const std::string_view token = Peek();
-  position_ += token.size();
+void NffTokens::Take() {
+  position_ += Peek().size();
   Skip();
-  return token;
 }
 
 bool NffTokens::NumberFollows() const {
   if (AtEnd()) return false;
-  const char c = text_[position_];
+  const char c = window_[position_];
   return (c >= '0' && c <= '9') || c == '-' || c == '+' || c == '.';
 }
 
 double NffTokens::Number(std::string_view what) {
-  const char* const begin = text_.data() + position_;
-  const char* const last = text_.data() + text_.size();
+  const char* const begin = window_.data() + position_;
+  const char* const last = window_.data() + window_.size();
   double value = 0;
   const auto [end, error] = std::from_chars(begin, last, value);
   // The usual number is done; NaN is not, since it compares with nothing.
-  if (error == std::errc() && (end == last || EndsToken(*end)) && std::abs(value) <= kLargest)
-      [[likely]]
+  if (error == std::errc() && (end == last ? text_.WindowReachesEnd() : EndsToken(*end)) &&
+      std::abs(value) <= kLargest) [[likely]]
     position_ += static_cast<std::size_t>(end - begin);
   else {
     value = UnusualNumber(what);
@@ -90,8 +111,8 @@ double NffTokens::Number(std::string_view what) {
   return value;
 }
 
-/// With a plus sign, too small for a double, or none that can be used.
-double NffTokens::UnusualNumber(std::string_view what) const {
+/// With a plus sign, too small for a double, cut by the window, or none that can be used.
+double NffTokens::UnusualNumber(std::string_view what) {
   if (AtEnd()) Fail(fmt::format("the file ends where {} should be", what));
   const std::string_view token = Peek();
   const std::string_view digits = token.substr(token.starts_with('+') ? 1 : 0);

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "raytracer/geometry/vec.h"
+#include "raytracer/scene/file_bytes.h"
 
 namespace stipple::raytracer {
 
@@ -15,14 +16,14 @@ class NffTokens {
  public:
   /// Both are looked at as long as this lives. A byte order mark at the beginning is none of the
   /// text's words.
-  NffTokens(std::string_view text, std::string_view name);
+  NffTokens(Text& text, std::string_view name);
 
-  bool AtEnd() const { return position_ == text_.size(); }
+  bool AtEnd() const { return position_ == window_.size(); }
   /// Line of the next token; at the end, the last line.
   long line() const { return line_; }
-  /// The next token, which stays; empty at the end.
-  std::string_view Peek() const;
-  std::string_view Take();
+  /// The next token, which stays; empty at the end. It can be looked at until it is taken.
+  std::string_view Peek();
+  void Take();
   /// Could the next token begin a number?
   bool NumberFollows() const;
 
@@ -34,19 +35,25 @@ class NffTokens {
   long Count(std::string_view what, long low, long high);
 
   /// Numbers that the rest of the text could hold at most.
-  std::size_t NumbersLeftAtMost() const { return (text_.size() - position_ + 1) / 2; }
+  std::size_t NumbersLeftAtMost() const {
+    return (window_.size() - position_ + text_.MostBytesBehind() + 1) / 2;
+  }
 
   [[noreturn]] void Fail(std::string_view problem) const { Fail(line_, problem); }
   [[noreturn]] void Fail(long line, std::string_view problem) const;
 
  private:
   void Skip();  // blanks and comments
-  double UnusualNumber(std::string_view what) const;
+  void SkipInWindow();
+  void MoveWindow();
+  double UnusualNumber(std::string_view what);
 
-  std::string_view text_;
+  Text& text_;
+  std::string_view window_;  // of the text
   std::string_view name_;
-  std::size_t position_ = 0;
-  long line_ = 1;
+  std::size_t position_ = 0;  // in the window
+  bool in_comment_ = false;   // that the window has cut
+  long line_ = 1, line_met_ = 1;
 };
 
 /// A token as a message may show it: not endless, and without bytes that disturb a terminal.

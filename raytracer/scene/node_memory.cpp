@@ -2,6 +2,9 @@
 #include "raytracer/scene/node_memory.h"
 
 #include <cstdint>
+#include <fstream>
+#include <limits>
+#include <string>
 #include <utility>
 
 namespace stipple::raytracer {
@@ -11,6 +14,14 @@ constexpr std::size_t kCacheLine = 64;
 
 }  // namespace
 
+std::uint64_t AvailableBytes() {
+  std::ifstream file("/proc/meminfo");
+  std::string word;
+  while (file >> word)
+    if (std::uint64_t kib = 0; word == "MemAvailable:" && file >> kib) return kib * 1024;
+  return std::numeric_limits<std::uint64_t>::max();
+}
+
 Node::Node(MPI_Comm comm) {
   MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &comm_);
   MPI_Comm_rank(comm_, &rank_);
@@ -18,6 +29,10 @@ Node::Node(MPI_Comm comm) {
 }
 
 Node::~Node() { MPI_Comm_free(&comm_); }
+
+std::uint64_t Node::BytesForEach() const {
+  return AvailableBytes() / static_cast<std::uint64_t>(size_);
+}
 
 bool Node::All(bool mine) const {
   const int one = mine ? 1 : 0;

@@ -6,9 +6,14 @@
 #include <mpi.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 namespace stipple::raytracer {
+
+/// Bytes that processes on this computer can still get (MemAvailable of /proc/meminfo), or the
+/// largest number where that is not known; of a simulated node, all that it has.
+std::uint64_t AvailableBytes();
 
 /// The ranks that can share memory with this one; the first of them leads.
 class Node {
@@ -23,6 +28,9 @@ class Node {
   int rank() const { return rank_; }
   int size() const { return size_; }
   bool leads() const { return rank_ == 0; }
+  /// Of what is available, as much as one of its ranks may take if each has objects of its own. The
+  /// ranks of a simulation share memory, but each is a node of the machine.
+  std::uint64_t BytesForEach() const;
   /// Is it true on every rank of the node? All of them ask.
   bool All(bool mine) const;
 

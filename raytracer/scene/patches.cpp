@@ -121,20 +121,25 @@ class CellGrid {
 
 }  // namespace
 
+double PatchErrorPixels(const Patch<double>& patch, const View& view) {
+  const double error = ErrorOfOneCell(patch);
+  return error > 0 ? PixelsPerRadian(view) * error / DistanceTo(patch, view.from) : 0;
+}
+
 double PatchErrorPixels(const Scene& scene) {
-  const double pixels = PixelsPerRadian(scene.view);
   double largest = 0;
-  for (const Patch<double>& patch : scene.shapes.patches) {
-    const double error = ErrorOfOneCell(patch), distance = DistanceTo(patch, scene.view.from);
-    if (error > 0) largest = std::max(largest, pixels * error / distance);
-  }
+  for (const Patch<double>& patch : scene.shapes.patches)
+    largest = std::max(largest, PatchErrorPixels(patch, scene.view));
   return largest;
 }
 
 PatchChoice ChoosePatches(const Scene& scene, std::string_view rule) {
+  return ChoosePatches(scene.shapes.patches.size(), PatchErrorPixels(scene), rule);
+}
+
+PatchChoice ChoosePatches(std::size_t patches, double error, std::string_view rule) {
   PatchChoice choice;
-  choice.patches = scene.shapes.patches.size();
-  const double error = PatchErrorPixels(scene);
+  choice.patches = patches;
   choice.cells_needed = std::max(1.0, std::ceil(std::sqrt(error / kPatchErrorPixels)));
   if (rule == "auto")
     choice.cells =
@@ -145,13 +150,17 @@ PatchChoice ChoosePatches(const Scene& scene, std::string_view rule) {
   return choice;
 }
 
+void AddTriangles(const Patch<double>& patch, int cells, std::uint32_t material, Shapes& to) {
+  CellGrid(patch, cells).AddTo(to, material);
+}
+
 void TessellatePatches(Scene& scene, int cells) {
   Shapes& shapes = scene.shapes;
   const std::vector<Object> objects = std::exchange(shapes.objects, {});
   const std::vector<Patch<double>> patches = std::exchange(shapes.patches, {});
   for (const Object& object : objects) {
     if (object.kind == ShapeKind::kPatch)
-      CellGrid(patches[object.index], cells).AddTo(shapes, object.material);
+      AddTriangles(patches[object.index], cells, object.material, shapes);
     else
       shapes.objects.push_back(object);
   }

@@ -27,12 +27,17 @@ inline constexpr int kMostPatchCells = 32;
 /// Source: Filip, Magedson, Markot, "Surface algorithms using bounds on derivatives", Computer
 /// Aided Geometric Design 3(4), 1986.
 double PatchErrorPixels(const Scene& scene);
+double PatchErrorPixels(const Patch<double>& patch, const View& view);
 
 /// `rule`: auto, direct, or the number of cells per side.
 PatchChoice ChoosePatches(const Scene& scene, std::string_view rule);
+/// Of so many patches where PatchErrorPixels is `error` at the worst.
+PatchChoice ChoosePatches(std::size_t patches, double error, std::string_view rule);
 
-/// Replaces every patch, where it stands among the objects, by its triangles with normals; a cell
-/// at an edge that is one point gives one triangle.
+/// Adds a patch's triangles with normals; a cell at an edge that is one point gives one triangle.
+void AddTriangles(const Patch<double>& patch, int cells, std::uint32_t material, Shapes& to);
+
+/// Replaces every patch, where it stands among the objects, by its triangles.
 void TessellatePatches(Scene& scene, int cells);
 
 /// Chooses, tessellates if that was chosen, and notes the choice in the scene. Nothing to do in a

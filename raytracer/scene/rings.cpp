@@ -25,7 +25,7 @@ Matrix RingFrame(int ring) {
   return RotationZ((72 * ring - 36) * kPi / 180) * RotationX(std::acos(1 / std::sqrt(5.0)));
 }
 
-void AddRing(Shapes& shapes, Vec3 center, int ring) {
+void AddRing(ShapeStream& shapes, Vec3 center, int ring) {
   const Matrix frame = RingFrame(ring);
   const auto corner = [&](int i) {
     const double angle = 2 * kPi * i / 5;
@@ -38,7 +38,7 @@ void AddRing(Shapes& shapes, Vec3 center, int ring) {
   }
 }
 
-void AddWall(Shapes& shapes, int size) {
+void AddWall(ShapeStream& shapes, int size) {
   const double y = (size + 1) * LevelDistance();
   const double half = 1.01 * (size + 2) * LevelDistance() * std::tan(kPi / 8);
   const double left = -1 - half, right = -1 + half, low = 0.5 - half, high = 0.5 + half;
@@ -50,24 +50,23 @@ void AddWall(Shapes& shapes, int size) {
 
 double RingsObjects(double size) { return 1 + 10 * size * (size + 1) * (2 * size + 1); }
 
-Scene Rings(int size) {
+Scene Rings(int size, const TakeShapes& take) {
   Scene scene;
+  ShapeStream shapes(scene.shapes, take);
   const double eye_y = -LevelDistance();
   scene.background = kSpdBackground;
   scene.view = {{-1, eye_y, 0.5}, {-1, eye_y + 1, 0.5}, {0, 0, 1}, 45, 1, {512, 512}};
   scene.lights = {{{3, eye_y, 3}}, {{-4, eye_y, 1}}, {{2, eye_y, -4}}};
   scene.materials = {{{1, 1, 1}, 1, 0, kMatteShine, 0, 0}};
   for (const Vec3& color : kColors) scene.materials.push_back({color, 0.5, 0.2, 3.0827, 0, 0});
-  const auto objects = static_cast<std::size_t>(RingsObjects(size));
-  scene.shapes.objects.reserve(objects);
-  scene.shapes.cones.reserve(objects / 2);
-  scene.shapes.spheres.reserve(objects / 2);
-  AddWall(scene.shapes, size);
+  const auto half = static_cast<std::size_t>(RingsObjects(size)) / 2;
+  shapes.Expect(half, half, 1);
+  AddWall(shapes, size);
   for (int level = 1; level <= size; ++level)
     for (int row = 0; row < level; ++row)
       for (int column = 0; column < level; ++column)
         for (int ring = 0; ring < 6; ++ring)
-          AddRing(scene.shapes,
+          AddRing(shapes,
                   {2.0 * column - (level - 1), level * LevelDistance(), 2.0 * row - (level - 1)},
                   ring);
   return scene;

@@ -4,7 +4,6 @@
 #define STIPPLE_RAYTRACER_SCENE_SCENE_H
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "raytracer/geometry/shapes.h"
@@ -49,13 +48,6 @@ struct Scene {
   Shapes shapes;
   PatchChoice patches{};
 };
-
-/// These objects of a scene, as numbers in ascending order say; they are numbered anew.
-Shapes SubsetOf(const Shapes& shapes, std::span<const std::uint32_t> numbers);
-
-/// Keeps `limit` objects: the largest spheres first (objects that are no spheres count as largest),
-/// else the first in the file. Their order stays.
-void LimitObjects(Scene& scene, std::uint64_t limit);
 
 }  // namespace stipple::raytracer
 

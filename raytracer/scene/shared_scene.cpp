@@ -25,16 +25,14 @@ struct KeptPlace {
 template <class Real>
 class Leader {
  public:
-  Leader(const SceneChoice& choice, Hierarchy hierarchy) : choice_(choice), hierarchy_(hierarchy) {}
+  /// `allowed`: bytes that the scene may take.
+  Leader(const SceneChoice& choice, Hierarchy hierarchy, std::uint64_t allowed)
+      : choice_(choice), hierarchy_(hierarchy), allowed_(allowed) {}
 
   /// Finds the scene in the cache, or reads or generates it.
   void Load() {
-    if (IsFile(choice_)) {
-      FindKept();
-      if (!kept_) ReadScene();
-    } else {
-      scene_ = SceneFrom(choice_, {});
-    }
+    if (IsFile(choice_)) FindKept();
+    if (!kept_) ReadScene();
     view_ = ViewOf(choice_, kept_ ? kept_->built.scene.view : scene_.view);
     found_ = kept_.has_value();
   }
@@ -43,8 +41,12 @@ class Leader {
   void Build() {
     if (found_) return;  // a mapped file, which takes no memory that others need
     scene_.view = view_;
+    const PatchChoice patches = ChoosePatches(scene_, choice_.patches);
+    const auto cells = static_cast<std::uint64_t>(patches.cells);
+    RequireMemory(
+        BytesToBuild(scene_.shapes) + BytesOfTriangles(2 * cells * cells * patches.patches),
+        allowed_, fmt::format("{} objects take", scene_.shapes.objects.size()));
     AdaptPatches(scene_, choice_.patches);
-    RequireMemory(scene_.shapes, choice_.memory_limit);
     Model<Real> model = BuildModel<Real>(std::move(scene_.shapes), hierarchy_);
     made_ = {std::move(scene_), std::move(model)};
     // What becomes of patches depends on the view, which the name of a kept scene does not tell.
@@ -83,17 +85,23 @@ class Leader {
 
   /// The text is hashed again: somebody may have written to the file meanwhile.
   void ReadScene() {
-    const FileText text(choice_.scene);
-    if (text.view().size() >= kLeastCachedText) {
-      Hash hash;
-      hash.Add(std::as_bytes(std::span(text.view())));
-      cache_.emplace(hash, Choices());
+    SceneStream stream(choice_);
+    FittingShapes fitting(allowed_);
+    if (!IsFile(choice_)) {
+      // Generated in as much memory as it takes, and no more; so it is counted before.
+      stream.Read([&](Shapes& added) { fitting.Count(added); });
+      fitting.Require({});
+      scene_ = stream.Read({});
+      return;
     }
-    scene_ = SceneFrom(choice_, text.view());
+    scene_ = stream.Read([&](Shapes& added) { fitting.Take(added); });
+    fitting.Require(scene_.shapes);
+    if (stream.text_bytes() >= kLeastCachedText) cache_.emplace(stream.text_hash(), Choices());
   }
 
   const SceneChoice& choice_;
   Hierarchy hierarchy_;
+  std::uint64_t allowed_;
   std::optional<SceneCache<Real>> cache_;
   std::optional<CachedScene<Real>> kept_;
   bool found_ = false;
@@ -161,8 +169,9 @@ bool Share(const Node& node, Leader<Real>& leader, SharedScene<Real>& shared) {
 template <class Real>
 SharedScene<Real> SceneForAll(const World& world, const SceneChoice& choice, Hierarchy hierarchy) {
   SharedScene<Real> shared;
-  Leader<Real> leader(choice, hierarchy);
   const Node node(world.comm);
+  Leader<Real> leader(choice, hierarchy,
+                      choice.memory_limit > 0 ? choice.memory_limit : AvailableBytes());
   Stopwatch watch;
   Mark(Moment::kLoadBegins);
   OnAllRanks(world, [&] { return node.leads() && (leader.Load(), true); });

@@ -173,7 +173,7 @@ void ForEachPotPatch(Use use) {
   for (const TurnedStrip* strip : {&kKnob, &kLid, &kBottom}) ForEachPatch(*strip, use);
 }
 
-void AddTriangle(Shapes& shapes, const SurfacePoint& a, const SurfacePoint& b,
+void AddTriangle(ShapeStream& shapes, const SurfacePoint& a, const SurfacePoint& b,
                  const SurfacePoint& c, std::uint32_t material) {
   const Vec3 corners[] = {a.position, b.position, c.position};
   const Vec3 normals[] = {a.normal, b.normal, c.normal};
@@ -181,7 +181,7 @@ void AddTriangle(Shapes& shapes, const SurfacePoint& a, const SurfacePoint& b,
 }
 
 /// A patch as SPD cuts it.
-void AddCells(Shapes& shapes, const ControlNet& patch, int cells, std::uint32_t material) {
+void AddCells(ShapeStream& shapes, const ControlNet& patch, int cells, std::uint32_t material) {
   const PatchSurface surface(patch);
   const auto at = [&](int row, int column) {
     return surface.At(static_cast<double>(row) / cells, static_cast<double>(column) / cells);
@@ -198,7 +198,7 @@ void AddCells(Shapes& shapes, const ControlNet& patch, int cells, std::uint32_t 
 }
 
 /// The squares of one colour of an n x n board from -4 to 4.
-void AddBoard(Shapes& shapes, int squares, int parity, std::uint32_t material) {
+void AddBoard(ShapeStream& shapes, int squares, int parity, std::uint32_t material) {
   const auto edge = [&](int i) { return -4 + 8.0 * i / squares; };
   for (int i = 0; i < squares; ++i) {
     for (int j = 0; j < squares; ++j) {
@@ -213,17 +213,15 @@ void AddBoard(Shapes& shapes, int squares, int parity, std::uint32_t material) {
 }
 
 /// All but the pot, whose material is the last one.
-Scene TeapotTable(int squares) {
-  Scene scene;
+void SetTable(int squares, Scene& scene, ShapeStream& shapes) {
   scene.background = kSpdBackground;
   scene.view = {{4.86, 7.2, 5.4}, {0, 0, 0}, {0, 0, 1}, 45, 1, {512, 512}};
   scene.lights = {{{-3.1, 9.8, 12.1}}, {{11.3, 5.1, 8.8}}};
   scene.materials = {{{1, 1, 1}, 0.5, 0.5, 4.81884, 0, 0},
                      {{0.5, 0.5, 0.5}, 0.5, 0.5, 4.81884, 0, 0},
                      {{1, 0.5, 0.1}, 0.75, 0.25, 3.0827, 0, 0}};
-  AddBoard(scene.shapes, squares, 1, 0);
-  AddBoard(scene.shapes, squares, 0, 1);
-  return scene;
+  AddBoard(shapes, squares, 1, 0);
+  AddBoard(shapes, squares, 0, 1);
 }
 
 constexpr std::uint32_t kPotMaterial = 2;
@@ -232,21 +230,24 @@ constexpr std::uint32_t kPotMaterial = 2;
 
 double TeapotObjects(double size) { return 65 * size * size - 8 * size; }
 
-Scene Teapot(int size) {
-  Scene scene = TeapotTable(size);
-  ForEachPotPatch(
-      [&](const ControlNet& patch) { AddCells(scene.shapes, patch, size, kPotMaterial); });
+Scene Teapot(int size, const TakeShapes& take) {
+  Scene scene;
+  ShapeStream shapes(scene.shapes, take);
+  SetTable(size, scene, shapes);
+  ForEachPotPatch([&](const ControlNet& patch) { AddCells(shapes, patch, size, kPotMaterial); });
   return scene;
 }
 
 double TeapotPatchesObjects(double size) { return size * size + 32; }
 
-Scene TeapotPatches(int size) {
-  Scene scene = TeapotTable(size);
+Scene TeapotPatches(int size, const TakeShapes& take) {
+  Scene scene;
+  ShapeStream shapes(scene.shapes, take);
+  SetTable(size, scene, shapes);
   ForEachPotPatch([&](const ControlNet& patch) {
     std::array<Vec3, 16> control;
     for (std::size_t k = 0; k < 16; ++k) control[k] = patch[k / 4][k % 4];
-    scene.shapes.AddPatch(control, kPotMaterial);
+    shapes.AddPatch(control, kPotMaterial);
   });
   return scene;
 }

@@ -24,10 +24,10 @@ struct Fork {
 constexpr Fork kForks[] = {{0, 40, 0.65}, {140, 25, 0.70}};
 
 struct Grower {
-  Shapes& shapes;
+  ShapeStream& shapes;
   Matrix fork[2];  // the frame of a child in that of its parent
 
-  explicit Grower(Shapes& all) : shapes(all) {
+  explicit Grower(ShapeStream& all) : shapes(all) {
     constexpr double kRadians = std::numbers::pi / 180;
     for (int i = 0; i < 2; ++i)
       fork[i] = RotationZ(kForks[i].turn_deg * kRadians) *
@@ -48,22 +48,21 @@ struct Grower {
 
 double TreeObjects(double size) { return 1 + 2 * (std::pow(2, size + 1) - 1); }
 
-Scene Tree(int size) {
+Scene Tree(int size, const TakeShapes& take) {
   Scene scene;
+  ShapeStream shapes(scene.shapes, take);
   scene.background = kSpdBackground;
   scene.view = {{4.5, 0.4, 2}, {0, 0, 1.5}, {0, 0, 1}, 45, 1, {512, 512}};
   scene.lights = {{{-5, 5, 50}},   {{30, -30, 30}}, {{-40, -30, 20}}, {{10, 30, 40}},
                   {{-30, 40, 10}}, {{50, 25, 20}},  {{-10, -60, 30}}};
   scene.materials = {{{0.2, 0.7, 0.2}, 1, 0, kMatteShine, 0, 0},
                      {{0.55, 0.4, 0.2}, 1, 0, kMatteShine, 0, 0}};
-  const auto objects = static_cast<std::size_t>(TreeObjects(size));
-  scene.shapes.objects.reserve(objects);
-  scene.shapes.cones.reserve(objects / 2);
-  scene.shapes.spheres.reserve(objects / 2);
+  const auto half = static_cast<std::size_t>(TreeObjects(size)) / 2;
+  shapes.Expect(half, half, 1);
   const double f = kFieldHalf;
   const Vec3 field[] = {{f, f, 0}, {-f, f, 0}, {-f, -f, 0}, {f, -f, 0}};
-  scene.shapes.AddPolygon(field, {}, 0);
-  Grower(scene.shapes).Grow({}, {0, 0, 0}, kTrunkRadius, size);
+  shapes.AddPolygon(field, {}, 0);
+  Grower(shapes).Grow({}, {0, 0, 0}, kTrunkRadius, size);
   return scene;
 }
 

@@ -118,6 +118,7 @@ void ReadRun(Run& run) {
   const double scale = Number("STIPPLE_WORK_SCALE", 1);
   run.node = {.prices = Scaled(PricesOf(*run.machine), scale),
               .event_ns = Ns(Number("STIPPLE_EVENT_COST", 0)),
+              .memory_bytes = run.machine->memory_bytes,
               .has_host = run.machine->always_host};
 }
 

@@ -34,7 +34,8 @@ struct StartUp {
 struct Node {
   Prices prices;
   std::uint64_t event_ns = 0;  // what recording an event costs
-  bool has_host = false;       // the last rank is the host, whatever the partition
+  std::uint64_t memory_bytes = 0;
+  bool has_host = false;  // the last rank is the host, whatever the partition
 };
 const Node& ThisNode();
 /// Of the host another than of nodes.

@@ -3,6 +3,7 @@
 #ifndef STIPPLE_RAYTRACER_SIMULATE_MACHINES_H
 #define STIPPLE_RAYTRACER_SIMULATE_MACHINES_H
 
+#include <cstdint>
 #include <simgrid/s4u.hpp>
 #include <span>
 #include <string_view>
@@ -22,6 +23,7 @@ struct MachineRow {
   std::string_view name;
   std::string_view what;
   int most_nodes;
+  std::uint64_t memory_bytes;  // of a node
   bool
       always_host;  // a host beside the nodes in every run, else only where the partition wants one
   Prices prices;

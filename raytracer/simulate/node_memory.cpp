@@ -15,12 +15,16 @@ constexpr std::size_t kCacheLine = 64;
 
 }  // namespace
 
+std::uint64_t AvailableBytes() { return simulate::ThisNode().memory_bytes; }
+
 Node::Node(MPI_Comm comm) : comm_(comm) {
   MPI_Comm_rank(comm_, &rank_);
   MPI_Comm_size(comm_, &size_);
 }
 
 Node::~Node() = default;
+
+std::uint64_t Node::BytesForEach() const { return AvailableBytes(); }
 
 /// All of the process can what one can.
 bool Node::All(bool mine) const { return mine; }

@@ -16,13 +16,12 @@ class BruteForceKernel final : public Kernel<double> {
  public:
   explicit BruteForceKernel(Shapes shapes) : shapes_(std::move(shapes)) {}
 
-  Hit<double> IntersectWithin(const Ray<double>& ray, double farthest,
-                              TestCounts& tests) const override {
+  Hit<double> Intersect(const Ray<double>& ray, TestCounts& tests) const override {
     const ShearRay<double> shear(ray);
     Hit<double> best;
     for (std::uint32_t number = 0; number < shapes_.objects.size(); ++number) {
       const Hit<double> hit = Try(number, ray, shear, tests);
-      if (hit.t < best.t && hit.t <= farthest) best = hit;
+      if (hit.t < best.t) best = hit;
     }
     return best;
   }

@@ -87,11 +87,13 @@ TEST(Bvh, HitsWhatBruteForceHits) {
       const Hit<double> hit = kernel->Intersect(ray, tests);
       ASSERT_EQ(hit.object, expected.object);
       ASSERT_EQ(hit.t, expected.t);
-      const Hit<double> as_far = kernel->IntersectWithin(ray, expected.t, tests);
-      ASSERT_EQ(as_far.object, expected.object);
-      const double nearer = std::nextafter(expected.t, 0);
-      ASSERT_EQ(kernel->IntersectWithin(ray, nearer, tests).object,
-                std::isinf(expected.t) ? expected.object : kNoObject);
+      const auto within = [&](double farthest) {
+        const Copies none;
+        Repeats repeats{none, 0};
+        return kernel->IntersectAgain(ray, farthest, tests, repeats).object;
+      };
+      ASSERT_EQ(within(expected.t), expected.object);
+      if (expected.object != kNoObject) ASSERT_EQ(within(std::nextafter(expected.t, 0)), kNoObject);
       hits += hit.object != kNoObject ? 1 : 0;
       ASSERT_EQ(kernel->Occluded(ray, kMiss<double>, tests), expected.object != kNoObject);
       ASSERT_FALSE(kernel->Occluded(ray, expected.t, tests) && expected.object != kNoObject);
@@ -255,6 +257,38 @@ TEST(Bvh, ADeepTreeIsWalked) {
   TestCounts tests;
   const Hit<double> hit = kernel->Intersect({{1e29, 0, 0}, {-1, 0, 0}}, tests);
   EXPECT_EQ(hit.object, BruteForce(shapes, {{1e29, 0, 0}, {-1, 0, 0}}).object);
+}
+
+// Objects in three leaves, each object in one: a test of any is a repeated one of just one leaf.
+TEST(Bvh, TestsThatAreDoneAgainAreCounted) {
+  for (Scene& scene : Scenes()) {
+    const Model<double> model = BuildModel<double>(std::move(scene.shapes));
+    std::vector<LeafBits> leaves;
+    for (std::uint32_t number = 0; number < model.objects.size(); ++number)
+      leaves.push_back(BitOf(number % 3));
+    const Copies copies(model, leaves);
+    for (const std::string_view name : {"bvh", "scalar"}) {
+      const auto kernel = MakeKernel(name, model);
+      for (const Ray<double>& ray : RandomRays(300, 5)) {
+        TestCounts once, again;
+        std::uint64_t repeated = 0;
+        const Hit<double> hit = kernel->Intersect(ray, once);
+        const bool stopped = kernel->Occluded(ray, 3, once);
+        for (const std::uint32_t leaf : {0U, 1U, 2U, 3U}) {
+          Repeats repeats{copies, BitOf(leaf)};
+          again = {};
+          const Hit<double> same = kernel->IntersectAgain(ray, kMiss<double>, again, repeats);
+          EXPECT_EQ(same.t, hit.t);
+          EXPECT_EQ(same.object, hit.object);
+          EXPECT_EQ(kernel->OccludedAgain(ray, 3, again, repeats), stopped);
+          repeated += repeats.tests;
+        }
+        EXPECT_EQ(again.box_tests, once.box_tests);
+        EXPECT_EQ(again.primitive_tests, once.primitive_tests);
+        EXPECT_EQ(repeated, once.primitive_tests);
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -143,7 +143,7 @@ TEST(EmbreeKernel, LongDoubleIsRefused) {
 TEST(EmbreeKernel, CountsTheRaysThatOurKernelCounts) {
   for (const Generator& generator : kGenerators) {
     const auto counts = [&](std::string_view name) {
-      Scene scene = generator.scene(generator.usual);
+      Scene scene = generator.scene(generator.usual, {});
       const auto model = BuildModel<double>(std::move(scene.shapes), HierarchyFor(name));
       const auto kernel = MakeKernel(name, model);
       const auto sampler = MakeSampler(scene, model, *kernel, {}, {128, 128}, {});

@@ -7,6 +7,7 @@
 #include <random>
 #include <set>
 
+#include "raytracer/partition/box_sample.h"
 #include "raytracer/partition/holding.h"
 
 namespace stipple::raytracer {
@@ -45,20 +46,32 @@ std::vector<Bounds> SmallBoxes(std::size_t count, std::uint64_t seed) {
   return boxes;
 }
 
+/// By leaf: numbers of the objects that lie in it.
+std::vector<std::set<std::uint32_t>> ObjectsIn(const ObjectTree& tree,
+                                               const std::vector<Bounds>& boxes) {
+  std::vector<std::set<std::uint32_t>> objects(tree.leaves());
+  std::vector<std::uint32_t> leaves;
+  for (std::uint32_t number = 0; number < boxes.size(); ++number) {
+    tree.LeavesOf(boxes[number], leaves);
+    EXPECT_TRUE(std::ranges::is_sorted(leaves));
+    for (const std::uint32_t leaf : leaves) objects[leaf].insert(number);
+  }
+  return objects;
+}
+
 TEST(ObjectTree, EachObjectLiesInEveryLeafWhoseCellItReachesInto) {
   const std::vector<Bounds> boxes = SmallBoxes(500, 1);
   for (const std::uint32_t leaves : {1U, 2U, 3U, 8U, 32U, 100U}) {
     const ObjectTree tree(boxes, leaves);
     ASSERT_EQ(tree.leaves(), leaves);
+    const std::vector<std::set<std::uint32_t>> objects = ObjectsIn(tree, boxes);
     for (std::uint32_t leaf = 0; leaf < leaves; ++leaf) {
       const Bounds& cell = tree.CellOf(leaf);
-      const std::set<std::uint32_t> in(tree.ObjectsIn(leaf).begin(), tree.ObjectsIn(leaf).end());
-      EXPECT_TRUE(std::ranges::is_sorted(tree.ObjectsIn(leaf)));
       for (std::uint32_t number = 0; number < boxes.size(); ++number) {
         const Vec3 low = Max(boxes[number].low, cell.low),
                    high = Min(boxes[number].high, cell.high);
         if (low.x < high.x && low.y < high.y && low.z < high.z) {
-          EXPECT_TRUE(in.contains(number)) << leaf << ' ' << number;
+          EXPECT_TRUE(objects[leaf].contains(number)) << leaf << ' ' << number;
         }
       }
     }
@@ -70,8 +83,8 @@ TEST(ObjectTree, LeavesHoldAboutTheSameNumberOfObjects) {
   for (const std::uint32_t leaves : {2U, 5U, 8U, 32U}) {
     const ObjectTree tree(boxes, leaves);
     std::size_t most = 0;
-    for (std::uint32_t leaf = 0; leaf < leaves; ++leaf)
-      most = std::max(most, tree.ObjectsIn(leaf).size());
+    for (const std::set<std::uint32_t>& in : ObjectsIn(tree, boxes))
+      most = std::max(most, in.size());
     EXPECT_LT(static_cast<double>(most), 2.0 * 5000 / leaves) << leaves;
   }
 }
@@ -90,6 +103,7 @@ TEST(ObjectTree, WhateverARayMeetsLiesInALeafOnItsWay) {
   Dice dice(4);
   for (const std::uint32_t leaves : {1U, 2U, 7U, 32U}) {
     const ObjectTree tree(boxes, leaves);
+    const std::vector<std::set<std::uint32_t>> objects = ObjectsIn(tree, boxes);
     for (int i = 0; i < 20000; ++i) {
       Ray<double> ray{dice.Point(12), dice.Direction()};
       if (i % 3 == 0) ray.origin = boxes[static_cast<std::size_t>(i) % boxes.size()].low;
@@ -99,8 +113,7 @@ TEST(ObjectTree, WhateverARayMeetsLiesInALeafOnItsWay) {
         const double meets = EnterBounds(boxes[number], SlabRay(ray, 1), 1e30);
         if (std::isinf(meets)) continue;
         const bool found = std::ranges::any_of(way, [&](const LeafOnWay& on_way) {
-          return on_way.enter <= meets &&
-                 std::ranges::binary_search(tree.ObjectsIn(on_way.leaf), number);
+          return on_way.enter <= meets && objects[on_way.leaf].contains(number);
         });
         EXPECT_TRUE(found) << leaves << ' ' << i << ' ' << number;
       }
@@ -113,8 +126,7 @@ TEST(ObjectTree, NothingAndOneEnormousObject) {
   std::vector<Bounds> boxes = SmallBoxes(50, 5);
   boxes.push_back({{-1e6, -1e6, -1e6}, {1e6, 1e6, 1e6}});
   const ObjectTree tree(boxes, 8);
-  for (std::uint32_t leaf = 0; leaf < 8; ++leaf)
-    EXPECT_EQ(std::ranges::count(tree.ObjectsIn(leaf), 50U), 1);
+  for (const std::set<std::uint32_t>& in : ObjectsIn(tree, boxes)) EXPECT_TRUE(in.contains(50));
 }
 
 TEST(ObjectTree, ObjectsInOnePlaceStillGiveAsManyLeaves) {
@@ -175,6 +187,38 @@ TEST(Holding, ARayGoesToWhoHasFewIfTheOthersHaveManyMore) {
   EXPECT_EQ(holding.Next(way, waiting, 5), 1);  // of 0, 1 and 2, which hold leaf 2
   waiting[0] = waiting[1] = 2 * Holding::kManyRays;
   EXPECT_EQ(holding.Next(way, waiting, 5), 2);
+}
+
+TEST(BoxSample, FewObjectsAreAllTaken) {
+  const std::vector<Bounds> boxes = SmallBoxes(4096, 7);
+  BoxSample sample(4);
+  for (std::uint32_t number = 0; number < boxes.size(); ++number) sample.See(boxes[number], number);
+  ASSERT_EQ(sample.boxes().size(), boxes.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    EXPECT_EQ(sample.boxes()[i].low, boxes[i].low) << i;
+}
+
+// Objects that lie in rows, as generators make them: every second on the same side.
+TEST(BoxSample, OfManyObjectsATreeHalvesAllAboutAsWell) {
+  std::vector<Bounds> boxes = SmallBoxes(100000, 8);
+  for (std::size_t i = 0; i < boxes.size(); i += 2) {
+    boxes[i].low.x -= 30;
+    boxes[i].high.x -= 30;
+  }
+  for (const std::uint32_t leaves : {2U, 8U, 32U}) {
+    BoxSample sample(leaves);
+    for (std::uint32_t number = 0; number < boxes.size(); ++number)
+      sample.See(boxes[number], number);
+    EXPECT_LE(sample.boxes().size() * sizeof(Bounds), BoxSample::BytesFor(leaves, boxes.size()));
+    const auto most_of = [&](const ObjectTree& tree) {
+      std::size_t most = 0;
+      for (const std::set<std::uint32_t>& in : ObjectsIn(tree, boxes))
+        most = std::max(most, in.size());
+      return static_cast<double>(most);
+    };
+    const ObjectTree tree(sample.boxes(), leaves, sample.scene());
+    EXPECT_LT(most_of(tree), 1.2 * most_of(ObjectTree(boxes, leaves))) << leaves;
+  }
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ RayCounts CountsOf(Scene scene, ImageSize image, Samples samples, ShadingChoice 
 }
 
 struct Published {
-  Scene (*scene)(int size);
+  Scene (*scene)(int size, const TakeShapes& take);
   int size;
   double eye_hits, shadow_rays, reflected_rays;
 };
@@ -29,7 +29,7 @@ constexpr Published kPublished[] = {{Balls, 4, 263169, 954368, 175095},
 
 TEST(SpdCounts, AreWithinHalfAPercentOfThePublished) {
   for (const Published& published : kPublished) {
-    const RayCounts counts = CountsOf(published.scene(published.size), {512, 512}, {});
+    const RayCounts counts = CountsOf(published.scene(published.size, {}), {512, 512}, {});
     EXPECT_EQ(counts.eye_rays, 513U * 513U);
     const auto close = [](std::uint64_t count, double expected) {
       EXPECT_NEAR(static_cast<double>(count), expected, 0.005 * expected);

@@ -31,7 +31,7 @@ const Generator& GeneratorOf(std::string_view name) {
 
 TEST(Generate, ScenesAreThoseOfSpd) {
   for (const KnownScene& known : kKnownScenes) {
-    const Scene scene = GeneratorOf(known.name).scene(known.size);
+    const Scene scene = GeneratorOf(known.name).scene(known.size, {});
     EXPECT_EQ(scene.shapes.objects.size(), known.objects) << known.name << ' ' << known.size;
     EXPECT_EQ(DigestOf(scene), known.digest) << known.name << ' ' << known.size;
   }
@@ -40,7 +40,7 @@ TEST(Generate, ScenesAreThoseOfSpd) {
 TEST(Generate, ObjectCountsFollowTheFormulas) {
   for (const Generator& generator : kGenerators)
     for (int size = generator.smallest; size < generator.smallest + 5; ++size)
-      EXPECT_EQ(static_cast<double>(generator.scene(size).shapes.objects.size()),
+      EXPECT_EQ(static_cast<double>(generator.scene(size, {}).shapes.objects.size()),
                 generator.objects(size))
           << generator.name << ' ' << size;
 }

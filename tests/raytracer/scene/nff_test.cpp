@@ -8,8 +8,10 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <numbers>
+#include <random>
 #include <string>
 
 #include "raytracer/errors.h"
@@ -142,6 +144,41 @@ TEST(Nff, AFileIsWrittenAsFormatted) {
   const std::string path = testing::TempDir() + "nff_test_" + std::to_string(getpid()) + ".nff";
   WriteNff(Tree(2), path);
   EXPECT_EQ(FormatNff(ReadNff(path)), FormatNff(Tree(2)));
+  std::remove(path.c_str());
+}
+
+/// What `read` says of a text that is wrong.
+std::string Complaint(const std::function<void()>& read) {
+  try {
+    read();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+// Files come through a window of 64 kB: nothing may depend on where it cuts them.
+TEST(Nff, AFileIsReadAsItsTextIs) {
+  const std::string path = testing::TempDir() + "nff_window_" + std::to_string(getpid()) + ".nff";
+  std::mt19937 random(3);
+  for (int round = 0; round < 20; ++round) {
+    std::string text = kView;
+    while (text.size() < 300000) {
+      const std::string digits(random() % 50 == 0 ? 5000 + random() % 90000 : random() % 12, '3');
+      text += "s 0." + digits + "1 -2 " + std::to_string(random() % 1000) + " 1\n";
+      if (random() % 20 == 0) text += '#' + std::string(random() % 3000, 'p') + '\n';
+      if (random() % 500 == 0) text += '#' + std::string(70000 + random() % 70000, '\t') + "s 1\r";
+      if (random() % 500 == 0) text += std::string(70000 + random() % 70000, '\n');
+      if (random() % 2 == 0) text += "p 3 0 0 0  1 0 0\n\n0 1 0";
+      text += std::string(random() % 9 + 1, ' ');
+    }
+    std::ofstream(path, std::ios::binary) << text;
+    EXPECT_EQ(FormatNff(ReadNff(path)), FormatNff(ParseNff(text, path)));
+    const std::string wrong = text + "# end\n s 1 2 3\n";
+    std::ofstream(path, std::ios::binary) << wrong;
+    EXPECT_EQ(Complaint([&] { ReadNff(path); }), Complaint([&] { ParseNff(wrong, path); }));
+    EXPECT_NE(Complaint([&] { ReadNff(path); }), "none");
+  }
   std::remove(path.c_str());
 }
 

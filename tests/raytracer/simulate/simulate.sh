@@ -110,5 +110,15 @@ refuses 'known are' --machine cray --nodes 8 -- raytracer
 refuses 'from 1 to 128' --machine ipsc2 --nodes 129 -- raytracer
 refuses 'not built for simulated' --machine ipsc2 --nodes 8 -- ls
 test ! -e none.stipple || fail "an archive of what was refused"
+# A node has 16 MiB: what takes more is divided among nodes, or refused with the number.
+scene="--scene teapot --scene-size 26 --resolution 24x24 --samples 1"
+"$raytracer" $scene --output large.png > large.txt
+refuses '43732 objects take up to 18\.. MB .* 16\.8 MB are allowed' --machine ipsc2 --nodes 4 -- raytracer $scene --objects replicated
+for objects in auto partitioned coupled; do
+  simulate large_$objects ipsc2 4 -- --objects $objects --stats large_stats.json
+  cmp large.png large_$objects.png || fail "divided among small nodes ($objects) it is another picture"
+  grep -q '"copies"' large_stats.json || fail "a scene of 18 MB was not divided among nodes of 16 ($objects)"
+done
+refuses 'divided among 1 ranks, 1 leaf each, .* 16\.8 MB are allowed' --machine ipsc2 --nodes 1 -- raytracer $scene
 refuses 'counts no tests' --machine ipsc2 --nodes 2 -- raytracer --kernel embree
 echo "simulated runs are what they were"

@@ -35,10 +35,9 @@ class RecordingKernel final : public Kernel<double> {
  public:
   explicit RecordingKernel(const Kernel<double>& inner) : inner_(inner) {}
 
-  Hit<double> IntersectWithin(const Ray<double>& ray, double farthest,
-                              TestCounts& tests) const override {
+  Hit<double> Intersect(const Ray<double>& ray, TestCounts& tests) const override {
     sines_.push_back(Length(Cross(ray.direction, Vec3{0, 0, 1})));
-    return inner_.IntersectWithin(ray, farthest, tests);
+    return inner_.Intersect(ray, tests);
   }
   bool Occluded(const Ray<double>& ray, double max_t, TestCounts& tests) const override {
     return inner_.Occluded(ray, max_t, tests);

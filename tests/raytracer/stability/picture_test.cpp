@@ -77,9 +77,8 @@ class FixedNearKernel final : public Kernel<double> {
  public:
   FixedNearKernel(const Kernel<double>& inner, double nearest) : inner_(inner), nearest_(nearest) {}
 
-  Hit<double> IntersectWithin(const Ray<double>& ray, double farthest,
-                              TestCounts& tests) const override {
-    Hit<double> hit = inner_.IntersectWithin(Later(ray), farthest - nearest_, tests);
+  Hit<double> Intersect(const Ray<double>& ray, TestCounts& tests) const override {
+    Hit<double> hit = inner_.Intersect(Later(ray), tests);
     hit.t += nearest_;
     return hit;
   }
