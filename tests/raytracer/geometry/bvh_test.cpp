@@ -93,7 +93,9 @@ TEST(Bvh, HitsWhatBruteForceHits) {
         return kernel->IntersectAgain(ray, farthest, tests, repeats).object;
       };
       ASSERT_EQ(within(expected.t), expected.object);
-      if (expected.object != kNoObject) ASSERT_EQ(within(std::nextafter(expected.t, 0)), kNoObject);
+      if (expected.object != kNoObject) {
+        ASSERT_EQ(within(std::nextafter(expected.t, 0)), kNoObject);
+      }
       hits += hit.object != kNoObject ? 1 : 0;
       ASSERT_EQ(kernel->Occluded(ray, kMiss<double>, tests), expected.object != kNoObject);
       ASSERT_FALSE(kernel->Occluded(ray, expected.t, tests) && expected.object != kNoObject);
