@@ -49,29 +49,12 @@ endfunction()
 add_library(stipple_cold INTERFACE)
 target_compile_options(stipple_cold INTERFACE $<$<CONFIG:Release>:-O1>)
 
-# stipple_precompile(TARGET [OWNER OTHER] [HEADERS ...]): the headers that most sources include, and HEADERS, are parsed once: for
-# OTHER, which has the same options, or for TARGET. Not with a launcher, which is a cache of compilations as a rule and
-# cannot look into what is precompiled: so who develops with one compiles every source with what it includes itself.
-if(CMAKE_CXX_COMPILER_LAUNCHER AND NOT DEFINED CMAKE_DISABLE_PRECOMPILE_HEADERS)
-  set(CMAKE_DISABLE_PRECOMPILE_HEADERS ON)
-endif()
-function(stipple_precompile target)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "OWNER" "HEADERS")
-  if(arg_OWNER)
-    target_precompile_headers(${target} REUSE_FROM ${arg_OWNER})
-  else()
-    target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <cstdint> <cstring> <filesystem> <fstream>
-      <functional> <map> <memory> <numeric> <optional> <set> <span> <string> <string_view> <unordered_map> <utility>
-      <variant> <vector> <fmt/format.h> ${arg_HEADERS})
-  endif()
-endfunction()
-
 # stipple_test(NAME quick|full SOURCES ... LIBRARIES ...): a GoogleTest program, run as one CTest test.
 function(stipple_test name label)
   cmake_parse_arguments(PARSE_ARGV 2 arg "" "" "SOURCES;LIBRARIES")
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} stipple_warnings stipple_sanitize stipple_cold fmt::fmt GTest::gtest_main)
-  stipple_precompile(${name} OWNER tests_precompiled)
+  target_precompile_headers(${name} REUSE_FROM tests_precompiled)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
   add_test(NAME ${name} COMMAND ${name})
   set_tests_properties(${name} PROPERTIES LABELS ${label})
