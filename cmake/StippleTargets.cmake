@@ -45,11 +45,16 @@ function(stipple_instrument target)
   endforeach()
 endfunction()
 
+# For code that runs once: optimising it costs more than it brings.
+add_library(stipple_cold INTERFACE)
+target_compile_options(stipple_cold INTERFACE $<$<CONFIG:Release>:-O1>)
+
 # stipple_test(NAME quick|full SOURCES ... LIBRARIES ...): a GoogleTest program, run as one CTest test.
 function(stipple_test name label)
   cmake_parse_arguments(PARSE_ARGV 2 arg "" "" "SOURCES;LIBRARIES")
   add_executable(${name} ${arg_SOURCES})
-  target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} stipple_warnings stipple_sanitize GTest::gtest_main)
+  target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} stipple_warnings stipple_sanitize stipple_cold fmt::fmt GTest::gtest_main)
+  target_precompile_headers(${name} REUSE_FROM tests_precompiled)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
   add_test(NAME ${name} COMMAND ${name})
   set_tests_properties(${name} PROPERTIES LABELS ${label})

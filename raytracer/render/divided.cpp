@@ -63,6 +63,7 @@ bool Intact(std::string_view part) {
 constexpr bool Intact(std::string_view) { return true; }
 #endif
 constexpr std::string_view kPartFull = "part-full packages";
+constexpr std::string_view kAgreement = "agreement";  // of a second round, and of the other method
 
 /// Detectors by number: each sees its own signals only.
 struct DetectorSignal {
@@ -141,7 +142,7 @@ class Worker {
         supply_(world, mail, row_, choice.points, kAsk),
         neighbours_(static_cast<std::size_t>(choice.holders)),
         waiting_(static_cast<std::size_t>(choice.holders)),
-        four_counters_(world.rank, choice.holders),
+        four_counters_(world.rank, choice.holders, Intact(kAgreement) ? 2 : 1),
         safra_(world.rank, choice.holders),
         worth_sending_(WorthSending(choice)),
         progress_(PointCount(choice.points.raster) / static_cast<std::size_t>(choice.holders),
@@ -336,7 +337,9 @@ class Worker {
     if (EndIsFound()) End();
   }
 
-  bool EndIsFound() const { return world_.rank == 0 && four_counters_.ended() && safra_.ended(); }
+  bool EndIsFound() const {
+    return world_.rank == 0 && four_counters_.ended() && (safra_.ended() || !Intact(kAgreement));
+  }
 
   void End() {
     if (ended_) return;

@@ -3,11 +3,12 @@
 # Whatever becomes of messages and ranks: one picture, byte for byte, when every call takes a while at random and messages
 # of several ranks are taken in any order; and when a rank is killed or runs out of memory all end, with a message, without
 # half a picture, and what was recorded can be read.
-# usage: adversity.sh RAYTRACER MPIEXEC ADVERSITY STIPPLE [full]
+# usage: adversity.sh RAYTRACER MPIEXEC ADVERSITY HASTY STIPPLE [full]
 . "$(dirname "$(realpath "$0")")/begin.sh"
 adversity=$3
-stipple=$4
-how_much=${5-quick}
+hasty=$4
+stipple=$5
+how_much=${6-quick}
 fail() { echo "FAIL: $*"; exit 1; }
 scene="--scene teapot --scene-size 3 --resolution 32x24"
 "$raytracer" $scene --output serial.png > serial.txt
@@ -22,6 +23,12 @@ ranks() {
   shift
   timeout 200 "$mpiexec" --oversubscribe -n "$ranks" sh -c "$preloaded" sh "$@"
 }
+
+# The control: a program that gets away with what it believes of MPI, and with bad luck does not.
+timeout 60 "$mpiexec" --oversubscribe -n 2 "$hasty" > hasty.txt 2>&1 || { cat hasty.txt; fail "hasty without bad luck"; }
+status=0
+ADVERSITY_DELAYS=1 ranks 2 "$hasty" > hasty.txt 2>&1 || status=$?
+test $status = 1 && grep -q '^not found by [1-9]' hasty.txt || { cat hasty.txt; fail "bad luck does not show: status $status"; }
 
 # usage: same RANKS SEED OPTIONS...
 same() {

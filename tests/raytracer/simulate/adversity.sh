@@ -1,16 +1,14 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# On a machine that is the same every time: ranks that keep what is not full wait for ever, which is found and said; tiles
-# are the worst partition of a scene in one corner; what is refused leaves no archive.
+# On a machine that is the same every time: ranks that keep what is not full wait for ever, which is found and said; one
+# round of counters, asked of nobody else, ends a run while rays are under way; tiles are the worst partition of a scene in
+# one corner; what is refused leaves no archive.
 # usage: adversity.sh STIPPLE RAYTRACER BREAKABLE: BREAKABLE/lib/stipple/simulate has a ray tracer that heeds STIPPLE_BREAK
-set -eu
 stipple=$1
 raytracer=$2
 breakable=$3
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-. "$(dirname "$(realpath "$0")")/../../mpi_environment.sh"
-cd "$work"
+tests=$(dirname "$(realpath "$0")")/../..
+. "$tests/own_folder.sh"
 fail() { echo "FAIL: $*"; exit 1; }
 
 # stipple finds the ray tracer by where it is itself.
@@ -22,13 +20,13 @@ ln -s "$(dirname "$(dirname "$stipple")")/lib/stipple/simulate/libstipple-machin
 scene="--scene teapot --scene-size 3 --resolution 32x32 --samples 1"
 "$raytracer" $scene --output real.png > real.txt
 # usage: simulate STIPPLE MACHINE OPTIONS...: its status in $status; without what $break_off names, if it heeds that
-break_off=
+break_off= nodes=8
 simulate() {
   program=$1 machine=$2
   shift 2
   status=0
   rm -f other.png
-  STIPPLE_BREAK=$break_off timeout 100 "$program" simulate --machine "$machine" --nodes 8 -o run.stipple --overwrite --json -- raytracer "$@" \
+  STIPPLE_BREAK=$break_off timeout 100 "$program" simulate --machine "$machine" --nodes $nodes -o run.stipple --overwrite --json -- raytracer "$@" \
     --output other.png > run.json 2> run.err || status=$?
 }
 figure() { sed -nE "s/.*\"$1\":\"?([^,\"}]*).*/\1/p" run.json; }
@@ -55,6 +53,22 @@ simulate here/bin/stipple ipsc2 $scene --objects partitioned --package 1
 break_off=
 test $status = 0 || { cat run.err; fail "status $status with packages of one ray"; }
 cmp real.png other.png || fail "picture differs with packages of one ray"
+
+# usage: ends_early NODES RESOLUTION PACKAGE: not by itself, but with one round of counters
+ends_early() {
+  tiny="--scene teapot --scene-size 2 --resolution $2 --samples 1"
+  "$raytracer" $tiny --output tiny.png > tiny.txt
+  nodes=$1
+  simulate "$stipple" ipsc2 $tiny --objects partitioned --package $3
+  test $status = 0 || { cat run.err; fail "status $status: $*"; }
+  cmp tiny.png other.png || fail "picture differs: $*"
+  break_off=agreement
+  simulate here/bin/stipple ipsc2 $tiny --objects partitioned --package $3
+  break_off= nodes=8
+  test $status != 0 && test ! -e other.png && grep -q 'rays came after their end was found\|work is left although' run.err
+}
+# Which runs a single round gets wrong is a matter of microseconds, the same ones every time: one of these is enough.
+ends_early 5 5x5 4 || ends_early 4 7x7 2 || ends_early 3 8x8 4 || ends_early 3 9x9 4 || fail "one round of counters is enough"
 
 # Balls in one corner of the picture: who has that corner has all the work.
 awk 'BEGIN {

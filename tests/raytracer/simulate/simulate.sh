@@ -2,13 +2,10 @@
 # SPDX-License-Identifier: MIT
 # Simulated runs: the same hash every time, the picture of a real run, archives that every command reads, clear errors.
 # usage: simulate.sh STIPPLE RAYTRACER
-set -eu
 stipple=$1
 raytracer=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-. "$(dirname "$(realpath "$0")")/../../mpi_environment.sh"
-cd "$work"
+tests=$(dirname "$(realpath "$0")")/../..
+. "$tests/own_folder.sh"
 fail() { echo "FAIL: $*"; exit 1; }
 scene="--scene teapot --scene-size 3 --resolution 64x64 --samples 1"
 

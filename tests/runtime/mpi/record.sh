@@ -8,10 +8,8 @@
 set -eu
 stipple=$1 consistency=$2 ranks=$3 golden=$4
 shift 4
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-. "$(dirname "$(realpath "$0")")/../../mpi_environment.sh"
-cd "$work"
+tests=$(dirname "$(realpath "$0")")/../..
+. "$tests/own_folder.sh"
 status=0
 # As `stipple run` does it, but the archive stays as it is written: CONSISTENCY reads it without our reader.
 mkdir run.stipple
