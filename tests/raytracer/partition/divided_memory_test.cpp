@@ -34,7 +34,9 @@ std::uint64_t PeakOf(const World& world, const SceneChoice& choice, bool coupled
   const Division division{.holders = world.size, .coupled = coupled};
   SceneParts<double> parts = PartsForAll<double>(world, choice, "bvh", division);
   if (coupled) {
-    Holding other = Holding::Dealt(world.size, parts.tree.leaves());
+    Holding other(world.size, parts.tree.leaves());
+    for (std::uint32_t leaf = 0; leaf < other.leaves(); ++leaf)
+      other.Give(leaf, static_cast<int>(leaf) % world.size);
     Hold(world, std::move(other), "bvh", parts);
   }
   return Status("VmHWM") - before;
