@@ -53,6 +53,7 @@ class ObjectTree {
 
   // Of a tree that halves 2^32 leaves.
   static constexpr int kMostPlanesAbove = 32;
+
   std::int32_t Split(std::span<const Bounds> boxes, std::vector<std::uint32_t> numbers,
                      const Bounds& cell, std::uint32_t leaves);
 
@@ -67,7 +68,7 @@ class ObjectTree {
 /// the rounding.
 class LeafWay {
  public:
-  /// Of a ray; `rounding`: relative error of its arithmetic. Both must outlive the questions.
+  /// Of a ray; `rounding`: relative error of its arithmetic. The tree must outlive the questions.
   void Begin(const ObjectTree& tree, const Ray<double>& ray, double rounding);
 
   /// Finds leaves until so many are known. False if the ray meets fewer.
