@@ -231,7 +231,7 @@ SceneParts<Real> PartsForAll(const World& world, const SceneChoice& choice,
         std::accumulate(parts.count.begin(), parts.count.end(), std::uint64_t{0});
     const std::uint64_t least = BoxSample::BytesFor(leaves, objects);
     if (division.coupled) {
-      RequireMemory(least, allowed, "finding where to cut it takes");
+      RequireMemory(least, allowed, "the boxes from which it is cut take");
       parts.most_bytes = MostBytesCoupled(parts.leaves, division.replicate, allowed);
       parts.holding = CoupledAtFirst(division.holders, parts.leaves, parts.most_bytes);
     } else {
